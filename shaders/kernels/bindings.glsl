@@ -1,0 +1,99 @@
+// Buffers of the wavefront and the one way to read them.
+//
+// Read-only data goes through `fetch_*`, one 16-byte word at a time. The build
+// compiles every kernel twice: with FETCH_TEXEL through uniform texel buffers
+// (the fastest path on CPU devices), without it through storage buffers.
+// The scene's arrays come in up to 8 pages; PAGE_SHIFT is a power of two of words.
+#ifndef KERNELS_BINDINGS_GLSL
+#define KERNELS_BINDINGS_GLSL
+#define GONIO_FETCH
+
+#include "layout/header.glsl"
+
+layout(local_size_x_id = 0, local_size_y = 1, local_size_z = 1) in;
+layout(constant_id = 1) const uint NODE_PAGES = 1u;
+layout(constant_id = 2) const uint TRIANGLE_PAGES = 1u;
+layout(constant_id = 3) const uint DATA_PAGES = 1u;
+layout(constant_id = 4) const uint PAGE_SHIFT = 31u;
+
+// Set 0: the scene.
+layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };
+#ifdef FETCH_TEXEL
+layout(set = 0, binding = 1) uniform usamplerBuffer node_pages[8];
+layout(set = 0, binding = 2) uniform usamplerBuffer triangle_pages[8];
+layout(set = 0, binding = 3) uniform usamplerBuffer data_pages[8];
+#define GONIO_READ(buffers, page, at) texelFetch(buffers[page], int(at))
+#else
+layout(set = 0, binding = 1, scalar) readonly buffer NodePage { uvec4 words[]; } node_pages[8];
+layout(set = 0, binding = 2, scalar) readonly buffer TrianglePage { uvec4 words[]; } triangle_pages[8];
+layout(set = 0, binding = 3, scalar) readonly buffer DataPage { uvec4 words[]; } data_pages[8];
+#define GONIO_READ(buffers, page, at) buffers[page].words[at]
+#endif
+
+// A set's page is chosen by a switch over constants: descriptor arrays may not be indexed by data everywhere.
+#define GONIO_FETCH_PAGED(name, buffers, PAGES)                                \
+    uvec4 name(uint at) {                                                      \
+        if (PAGES == 1u) return GONIO_READ(buffers, 0, at);                    \
+        uint within = at & ((1u << PAGE_SHIFT) - 1u);                          \
+        switch (at >> PAGE_SHIFT) {                                            \
+        case 0u: return GONIO_READ(buffers, 0, within);                        \
+        case 1u: return GONIO_READ(buffers, 1, within);                        \
+        case 2u: return GONIO_READ(buffers, 2, within);                        \
+        case 3u: return GONIO_READ(buffers, 3, within);                        \
+        case 4u: return GONIO_READ(buffers, 4, within);                        \
+        case 5u: return GONIO_READ(buffers, 5, within);                        \
+        case 6u: return GONIO_READ(buffers, 6, within);                        \
+        default: return GONIO_READ(buffers, 7, within);                        \
+        }                                                                      \
+    }
+
+GONIO_FETCH_PAGED(fetch_node, node_pages, NODE_PAGES)
+GONIO_FETCH_PAGED(fetch_triangle, triangle_pages, TRIANGLE_PAGES)
+GONIO_FETCH_PAGED(fetch_data, data_pages, DATA_PAGES)
+
+// Set 1: the work. Bindings 8-11 are read-only views of the buffers bound at 1-4.
+#ifdef FETCH_TEXEL
+layout(set = 1, binding = 8) uniform usamplerBuffer level_words;
+layout(set = 1, binding = 9) uniform usamplerBuffer chunk_words;
+layout(set = 1, binding = 10) uniform usamplerBuffer hit_words;
+layout(set = 1, binding = 11) uniform usamplerBuffer shadow_words;
+uvec4 fetch_level(uint at) { return texelFetch(level_words, int(at)); }
+uvec4 fetch_chunk(uint at) { return texelFetch(chunk_words, int(at)); }
+uvec4 fetch_hit(uint at) { return texelFetch(hit_words, int(at)); }
+uvec4 fetch_shadow(uint at) { return texelFetch(shadow_words, int(at)); }
+#else
+layout(set = 1, binding = 8, scalar) readonly buffer LevelWords { uvec4 level_words[]; };
+layout(set = 1, binding = 9, scalar) readonly buffer ChunkWords { uvec4 chunk_words[]; };
+layout(set = 1, binding = 10, scalar) readonly buffer HitWords { uvec4 hit_words[]; };
+layout(set = 1, binding = 11, scalar) readonly buffer ShadowWords { uvec4 shadow_words[]; };
+uvec4 fetch_level(uint at) { return level_words[at]; }
+uvec4 fetch_chunk(uint at) { return chunk_words[at]; }
+uvec4 fetch_hit(uint at) { return hit_words[at]; }
+uvec4 fetch_shadow(uint at) { return shadow_words[at]; }
+#endif
+
+// Where `load_path_state` reads: the level queues in extend (which copies its chunk), the chunk elsewhere.
+#ifdef PATHS_FROM_LEVELS
+#define fetch_path fetch_level
+#else
+#define fetch_path fetch_chunk
+#endif
+#include "layout/mod.glsl"
+
+// Arrays of single words in the data heap, as the Rust twins' slices.
+uint load_top_instance(uint index) { return fetch_data(header.first_top_instance + (index >> 2u))[index & 3u]; }
+uint load_texel(uint word) { return fetch_data(header.first_texel + (word >> 2u))[word & 3u]; }
+float load_table(uint index) { return uintBitsToFloat(fetch_data(header.first_table + (index >> 2u))[index & 3u]); }
+
+layout(set = 1, binding = 0, scalar) coherent buffer ControlBlock { Control control; };
+layout(set = 1, binding = 1, scalar) buffer LevelBlock { PathState levels[]; };
+layout(set = 1, binding = 2, scalar) buffer ChunkBlock { PathState chunk[]; };
+layout(set = 1, binding = 3, scalar) buffer HitBlock { Hit hits[]; };
+layout(set = 1, binding = 4, scalar) buffer ShadowBlock { ShadowRay shadows[]; };
+layout(set = 1, binding = 5, scalar) coherent buffer SlotBlock { FilmSum slots[]; };
+layout(set = 1, binding = 6, scalar) coherent buffer FilmBlock { FilmSum film[]; };
+layout(set = 1, binding = 7, scalar) coherent buffer AovBlock { AovPixel aovs[]; };
+
+layout(push_constant, scalar) uniform BatchBlock { Batch batch; };
+
+#endif

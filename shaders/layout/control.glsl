@@ -1,0 +1,50 @@
+// The wavefront's counters: what the schedule kernel and the queues keep on the device.
+#ifndef LAYOUT_CONTROL_GLSL
+#define LAYOUT_CONTROL_GLSL
+
+// Levels of pending rays: one per scattering depth, 0 to 64.
+const uint MAX_LEVELS = 66u;
+
+// Arguments of an indirect dispatch, in workgroups.
+struct DispatchArguments {
+    uint x;
+    uint y;
+    uint z;
+};
+
+// One per device. 372 bytes.
+// A round is: schedule; extend (this round's chunk) and shadow (last round's queue); shade.
+struct Control {
+    // Indirect arguments written by schedule.
+    DispatchArguments extend;
+    DispatchArguments shadow;
+    DispatchArguments shade;
+    // 1 once no level and no shadow ray is pending.
+    uint done;
+    // Level the chunk was taken from, its first entry and its size.
+    uint chunk_level;
+    uint chunk_first;
+    uint chunk_count;
+    // Shadow rays the shadow kernel traces in this round.
+    uint shadow_pending;
+    // Shadow rays appended by shade.
+    uint shadow_count;
+    // Limits set by the host: rays a chunk may hold, entries of levels 0 and >= 1, entries of the shadow queue.
+    uint chunk_limit;
+    uint level0_capacity;
+    uint level_capacity;
+    uint shadow_capacity;
+    // Appends that found a queue full: a bug, reported as an error, never a lost ray.
+    uint overflows;
+    // Contributions that were not a number; samples whose sum was clamped.
+    uint nan_count;
+    uint clamped_count;
+    // Rays traced, low and high words.
+    uvec2 closest_rays;
+    uvec2 shadow_rays;
+    uint rounds;
+    // Entries waiting on each level.
+    uint level_count[MAX_LEVELS];
+};
+
+#endif

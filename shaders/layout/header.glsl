@@ -1,0 +1,94 @@
+// What every kernel knows of the scene and of the batch in hand.
+#ifndef LAYOUT_HEADER_GLSL
+#define LAYOUT_HEADER_GLSL
+
+#include "layout/camera.glsl"
+
+const uint INTEGRATOR_LOCAL = 0u;
+const uint INTEGRATOR_WHITTED = 1u;
+
+const uint SAMPLER_SOBOL = 0u;
+const uint SAMPLER_STRATIFIED = 1u;
+const uint SAMPLER_INDEPENDENT = 2u;
+
+const uint FILTER_BOX = 0u;
+const uint FILTER_TENT = 1u;
+// Gaussian, Mitchell and other tabulated filters: piecewise constant, sampled through their inverse CDF.
+const uint FILTER_TABLE = 2u;
+
+// Scene-wide values. 256 bytes. `first_*` are offsets into the data heap in 16-byte words.
+struct SceneHeader {
+    Camera camera;
+    // I_a of the ambient term (radiance).
+    vec3 ambient;
+    // `INTEGRATOR_*`.
+    uint integrator;
+    // Radiance where a ray leaves the scene, towards -up and +up of the world (equal for a flat background).
+    vec3 background_bottom;
+    uint max_depth;
+    vec3 background_top;
+    // Branches whose largest |throughput| falls below this are cut.
+    float min_weight;
+    uint seed;
+    // `SAMPLER_*`.
+    uint sampler;
+    // For the stratified sampler: strata per axis, >= 1.
+    uint strata;
+    // 1 if shadow rays are traced.
+    uint shadows;
+    // `FILTER_*`.
+    uint filter_kind;
+    // Half width in pixels.
+    float filter_radius;
+    // Integral of |filter| over integral of filter, both axes: the weight of every sample before its sign.
+    float filter_norm;
+    // First float of the filter's inverse CDF in the table array; FILTER_KNOTS + 1 positions, then FILTER_KNOTS signs.
+    uint filter_table;
+    // Root of the top-level BVH, or INVALID for an empty scene.
+    uint top_root;
+    uint instance_count;
+    uint light_count;
+    uint material_count;
+    uint first_instance;
+    uint first_top_instance;
+    uint first_face;
+    uint first_vertex;
+    uint first_material;
+    uint first_light;
+    uint first_texture;
+    uint first_texel;
+    uint first_table;
+    // 2^film scale: k + e of the fixed-point film (strict rule 8), as a float power of two.
+    float film_scale;
+    // Clamp of one sample's sum, 2^C, in film units (radiance * 2^-unit).
+    float film_limit;
+    // 1 if auxiliary values are recorded.
+    uint aovs;
+    uint pad0;
+    uint pad1;
+    uint pad2;
+    uint pad3;
+};
+
+// Intervals in the tabulated filter's inverse CDF.
+const uint FILTER_KNOTS = 256u;
+
+// What one batch of samples covers. 48 bytes.
+// Slot i is pixel `first_pixel + i % pixel_count` of the crop (row by row) and sample `first_sample + i / pixel_count`.
+struct Batch {
+    // Corner and size of the crop, pixels of the full frame.
+    uint crop_x;
+    uint crop_y;
+    uint crop_width;
+    uint crop_height;
+    uint first_pixel;
+    uint pixel_count;
+    uint first_sample;
+    uint sample_count;
+    uint slot_count;
+    uint pad0;
+    uint pad1;
+    uint pad2;
+};
+
+#endif

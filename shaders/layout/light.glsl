@@ -1,0 +1,66 @@
+// Lights.
+#ifndef LAYOUT_LIGHT_GLSL
+#define LAYOUT_LIGHT_GLSL
+
+const uint LIGHT_POINT = 0u;
+const uint LIGHT_DIRECTIONAL = 1u;
+const uint LIGHT_SPOT = 2u;
+
+// Physical 1 / d^2.
+const uint ATTENUATION_INVERSE_SQUARE = 0u;
+// min(1, 1 / (c1 + c2 d + c3 d^2)).
+const uint ATTENUATION_POLYNOMIAL = 1u;
+const uint ATTENUATION_NONE = 2u;
+
+// One light. 80 bytes.
+struct Light {
+    vec3 position;
+    // `LIGHT_*`.
+    uint kind;
+    // Unit, the way the light travels (directional and spot).
+    vec3 direction;
+    // `ATTENUATION_*`.
+    uint attenuation;
+    // Radiant intensity (W/sr), or irradiance for a directional light; radiometric (lecture units are converted by bake).
+    vec3 intensity;
+    // Cosine of the half angle where a spot ends.
+    float cos_outer;
+    // c1, c2, c3 of the polynomial law.
+    vec3 c;
+    // Cosine of the half angle where a spot begins to fall off; equal to `cos_outer` for a hard edge.
+    float cos_inner;
+    // Warn's exponent p: intensity times cos^p of the angle off the axis; 0 for none.
+    float exponent;
+    // 1 if the light casts shadows.
+    uint casts_shadow;
+    uint pad0;
+    uint pad1;
+};
+const uint LIGHT_WORDS = 5u;
+
+#ifdef GONIO_FETCH
+Light load_light(uint index) {
+    uint at = header.first_light + index * LIGHT_WORDS;
+    Light r;
+    uvec4 w0 = fetch_data(at);
+    r.position = uintBitsToFloat(w0.xyz);
+    r.kind = w0.w;
+    uvec4 w1 = fetch_data(at + 1u);
+    r.direction = uintBitsToFloat(w1.xyz);
+    r.attenuation = w1.w;
+    uvec4 w2 = fetch_data(at + 2u);
+    r.intensity = uintBitsToFloat(w2.xyz);
+    r.cos_outer = uintBitsToFloat(w2.w);
+    uvec4 w3 = fetch_data(at + 3u);
+    r.c = uintBitsToFloat(w3.xyz);
+    r.cos_inner = uintBitsToFloat(w3.w);
+    uvec4 w4 = fetch_data(at + 4u);
+    r.exponent = uintBitsToFloat(w4.x);
+    r.casts_shadow = w4.y;
+    r.pad0 = w4.z;
+    r.pad1 = w4.w;
+    return r;
+}
+#endif
+
+#endif

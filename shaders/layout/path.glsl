@@ -1,0 +1,156 @@
+// The records that travel through the wavefront's queues.
+#ifndef LAYOUT_PATH_GLSL
+#define LAYOUT_PATH_GLSL
+
+// A ray to trace, world space. 48 bytes.
+struct Ray {
+    vec3 origin;
+    // Hits at t > t_max do not count; `T_INFINITE` for none. In units of `direction`.
+    float t_max;
+    // Unit for camera and scattered rays.
+    vec3 direction;
+    // The flat triangle (or sphere) the ray leaves: it is not tested again. `INVALID` for none.
+    uint skip_instance;
+    uint skip_primitive;
+    // For a sphere that is left: 1 if the ray goes inward (only the far root counts), 0 outward (no root counts).
+    uint skip_inward;
+    uint pad0;
+    uint pad1;
+};
+
+// Farther than any scene; finite so that no arithmetic meets an infinity.
+const float T_INFINITE = 1.0e30;
+
+// The closest hit of a ray. 32 bytes. A miss has `instance == INVALID`.
+struct Hit {
+    // In units of the ray's direction.
+    float t;
+    // Barycentric weights of corners 1 and 2 (0 on a sphere).
+    float b1;
+    float b2;
+    uint instance;
+    // Index of the triangle in its mesh as written; 0 on a sphere.
+    uint primitive;
+    uint pad0;
+    uint pad1;
+    uint pad2;
+};
+const uint HIT_WORDS = 2u;
+
+#ifdef GONIO_FETCH
+Hit load_hit(uint index) {
+    uint at = index * HIT_WORDS;
+    Hit r;
+    uvec4 w0 = fetch_hit(at);
+    r.t = uintBitsToFloat(w0.x);
+    r.b1 = uintBitsToFloat(w0.y);
+    r.b2 = uintBitsToFloat(w0.z);
+    r.instance = w0.w;
+    uvec4 w1 = fetch_hit(at + 1u);
+    r.primitive = w1.x;
+    r.pad0 = w1.y;
+    r.pad1 = w1.z;
+    r.pad2 = w1.w;
+    return r;
+}
+#endif
+
+// A pending ray and all that its shading will need to know. 112 bytes.
+struct PathState {
+    Ray ray;
+    // What a unit of radiance arriving along the ray adds to the sample; signed (negative filter lobes).
+    vec4 throughput;
+    // Where the sample's sum is kept in the batch.
+    uint slot;
+    // x | y << 16, in the full frame.
+    uint pixel;
+    uint sample_index;
+    // Hash of the branch history: `hash(parent, lobe)`; 0 for the camera ray.
+    uint path_id;
+    // Scattering events so far (passing straight through a pane is none).
+    uint depth;
+    // What is still uncovered in front of this ray, for alpha; 0 off the camera's straight line.
+    float coverage;
+    // Relative index of the medium the ray travels in (1 outside everything).
+    float eta;
+    uint pad0;
+    // Beer coefficient of that medium, per scene unit.
+    vec3 absorption;
+    uint pad1;
+};
+const uint PATH_STATE_WORDS = 7u;
+
+#ifdef GONIO_FETCH
+PathState load_path_state(uint index) {
+    uint at = index * PATH_STATE_WORDS;
+    PathState r;
+    uvec4 w0 = fetch_path(at);
+    r.ray.origin = uintBitsToFloat(w0.xyz);
+    r.ray.t_max = uintBitsToFloat(w0.w);
+    uvec4 w1 = fetch_path(at + 1u);
+    r.ray.direction = uintBitsToFloat(w1.xyz);
+    r.ray.skip_instance = w1.w;
+    uvec4 w2 = fetch_path(at + 2u);
+    r.ray.skip_primitive = w2.x;
+    r.ray.skip_inward = w2.y;
+    r.ray.pad0 = w2.z;
+    r.ray.pad1 = w2.w;
+    uvec4 w3 = fetch_path(at + 3u);
+    r.throughput = uintBitsToFloat(w3);
+    uvec4 w4 = fetch_path(at + 4u);
+    r.slot = w4.x;
+    r.pixel = w4.y;
+    r.sample_index = w4.z;
+    r.path_id = w4.w;
+    uvec4 w5 = fetch_path(at + 5u);
+    r.depth = w5.x;
+    r.coverage = uintBitsToFloat(w5.y);
+    r.eta = uintBitsToFloat(w5.z);
+    r.pad0 = w5.w;
+    uvec4 w6 = fetch_path(at + 6u);
+    r.absorption = uintBitsToFloat(w6.xyz);
+    r.pad1 = w6.w;
+    return r;
+}
+#endif
+
+// A shadow ray with the light it carries if nothing is in the way. 80 bytes.
+struct ShadowRay {
+    Ray ray;
+    // Added to the sample if unoccluded (throughput included).
+    vec4 contribution;
+    uint slot;
+    // Hash that dithers the conversion to fixed point (`film` in transport).
+    uint dither;
+    uint pad0;
+    uint pad1;
+};
+const uint SHADOW_RAY_WORDS = 5u;
+
+#ifdef GONIO_FETCH
+ShadowRay load_shadow_ray(uint index) {
+    uint at = index * SHADOW_RAY_WORDS;
+    ShadowRay r;
+    uvec4 w0 = fetch_shadow(at);
+    r.ray.origin = uintBitsToFloat(w0.xyz);
+    r.ray.t_max = uintBitsToFloat(w0.w);
+    uvec4 w1 = fetch_shadow(at + 1u);
+    r.ray.direction = uintBitsToFloat(w1.xyz);
+    r.ray.skip_instance = w1.w;
+    uvec4 w2 = fetch_shadow(at + 2u);
+    r.ray.skip_primitive = w2.x;
+    r.ray.skip_inward = w2.y;
+    r.ray.pad0 = w2.z;
+    r.ray.pad1 = w2.w;
+    uvec4 w3 = fetch_shadow(at + 3u);
+    r.contribution = uintBitsToFloat(w3);
+    uvec4 w4 = fetch_shadow(at + 4u);
+    r.slot = w4.x;
+    r.dither = w4.y;
+    r.pad0 = w4.z;
+    r.pad1 = w4.w;
+    return r;
+}
+#endif
+
+#endif

@@ -1,0 +1,5 @@
+//! `Scene` to `SceneData`: the only folder that knows obvhs.
+
+pub mod data;
+
+pub use data::SceneData;

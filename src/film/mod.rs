@@ -1,0 +1,10 @@
+//! Integer sums of samples, and what is made of them.
+
+/// Pixels of the full frame: corner and size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rect {
+    pub x: u32,
+    pub y: u32,
+    pub width: u32,
+    pub height: u32,
+}

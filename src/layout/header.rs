@@ -1,0 +1,97 @@
+//! What every kernel knows of the scene and of the batch in hand.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+use super::camera::Camera;
+
+pub const INTEGRATOR_LOCAL: u32 = 0;
+pub const INTEGRATOR_WHITTED: u32 = 1;
+
+pub const SAMPLER_SOBOL: u32 = 0;
+pub const SAMPLER_STRATIFIED: u32 = 1;
+pub const SAMPLER_INDEPENDENT: u32 = 2;
+
+pub const FILTER_BOX: u32 = 0;
+pub const FILTER_TENT: u32 = 1;
+/// Gaussian, Mitchell and other tabulated filters: piecewise constant, sampled through their inverse CDF.
+pub const FILTER_TABLE: u32 = 2;
+
+/// Scene-wide values. 256 bytes. `first_*` are offsets into the data heap in 16-byte words.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct SceneHeader {
+    pub camera: Camera,
+    /// I_a of the ambient term (radiance).
+    pub ambient: Vec3,
+    /// `INTEGRATOR_*`.
+    pub integrator: u32,
+    /// Radiance where a ray leaves the scene, towards -up and +up of the world (equal for a flat background).
+    pub background_bottom: Vec3,
+    pub max_depth: u32,
+    pub background_top: Vec3,
+    /// Branches whose largest |throughput| falls below this are cut.
+    pub min_weight: f32,
+    pub seed: u32,
+    /// `SAMPLER_*`.
+    pub sampler: u32,
+    /// For the stratified sampler: strata per axis, >= 1.
+    pub strata: u32,
+    /// 1 if shadow rays are traced.
+    pub shadows: u32,
+    /// `FILTER_*`.
+    pub filter_kind: u32,
+    /// Half width in pixels.
+    pub filter_radius: f32,
+    /// Integral of |filter| over integral of filter, both axes: the weight of every sample before its sign.
+    pub filter_norm: f32,
+    /// First float of the filter's inverse CDF in the table array; FILTER_KNOTS + 1 positions, then FILTER_KNOTS signs.
+    pub filter_table: u32,
+    /// Root of the top-level BVH, or INVALID for an empty scene.
+    pub top_root: u32,
+    pub instance_count: u32,
+    pub light_count: u32,
+    pub material_count: u32,
+    pub first_instance: u32,
+    pub first_top_instance: u32,
+    pub first_face: u32,
+    pub first_vertex: u32,
+    pub first_material: u32,
+    pub first_light: u32,
+    pub first_texture: u32,
+    pub first_texel: u32,
+    pub first_table: u32,
+    /// 2^film scale: k + e of the fixed-point film (strict rule 8), as a float power of two.
+    pub film_scale: f32,
+    /// Clamp of one sample's sum, 2^C, in film units (radiance * 2^-unit).
+    pub film_limit: f32,
+    /// 1 if auxiliary values are recorded.
+    pub aovs: u32,
+    pub _pad0: u32,
+    pub _pad1: u32,
+    pub _pad2: u32,
+    pub _pad3: u32,
+}
+
+/// Intervals in the tabulated filter's inverse CDF.
+pub const FILTER_KNOTS: u32 = 256;
+
+/// What one batch of samples covers. 48 bytes.
+/// Slot i is pixel `first_pixel + i % pixel_count` of the crop (row by row) and sample `first_sample + i / pixel_count`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Batch {
+    /// Corner and size of the crop, pixels of the full frame.
+    pub crop_x: u32,
+    pub crop_y: u32,
+    pub crop_width: u32,
+    pub crop_height: u32,
+    pub first_pixel: u32,
+    pub pixel_count: u32,
+    pub first_sample: u32,
+    pub sample_count: u32,
+    pub slot_count: u32,
+    pub _pad0: u32,
+    pub _pad1: u32,
+    pub _pad2: u32,
+}

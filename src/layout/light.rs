@@ -1,0 +1,41 @@
+//! Lights.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+pub const LIGHT_POINT: u32 = 0;
+pub const LIGHT_DIRECTIONAL: u32 = 1;
+pub const LIGHT_SPOT: u32 = 2;
+
+/// Physical 1 / d^2.
+pub const ATTENUATION_INVERSE_SQUARE: u32 = 0;
+/// min(1, 1 / (c1 + c2 d + c3 d^2)).
+pub const ATTENUATION_POLYNOMIAL: u32 = 1;
+pub const ATTENUATION_NONE: u32 = 2;
+
+/// One light. 80 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Light {
+    pub position: Vec3,
+    /// `LIGHT_*`.
+    pub kind: u32,
+    /// Unit, the way the light travels (directional and spot).
+    pub direction: Vec3,
+    /// `ATTENUATION_*`.
+    pub attenuation: u32,
+    /// Radiant intensity (W/sr), or irradiance for a directional light; radiometric (lecture units are converted by bake).
+    pub intensity: Vec3,
+    /// Cosine of the half angle where a spot ends.
+    pub cos_outer: f32,
+    /// c1, c2, c3 of the polynomial law.
+    pub c: Vec3,
+    /// Cosine of the half angle where a spot begins to fall off; equal to `cos_outer` for a hard edge.
+    pub cos_inner: f32,
+    /// Warn's exponent p: intensity times cos^p of the angle off the axis; 0 for none.
+    pub exponent: f32,
+    /// 1 if the light casts shadows.
+    pub casts_shadow: u32,
+    pub _pad0: u32,
+    pub _pad1: u32,
+}

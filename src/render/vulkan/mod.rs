@@ -1,0 +1,1 @@
+//! The Vulkan backend: the only folder with `unsafe`.

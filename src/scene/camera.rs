@@ -1,0 +1,21 @@
+//! The camera as written.
+
+use glam::Vec3;
+
+/// How the image plane is reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Full vertical field of view, radians.
+    Perspective { fov_y: f32 },
+    /// Height of the view in scene units.
+    Orthographic { height: f32 },
+}
+
+/// Where the picture is taken from. `eye`, `target` differ and `up` is not parallel to the view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    pub eye: Vec3,
+    pub target: Vec3,
+    pub up: Vec3,
+    pub projection: Projection,
+}

@@ -1,0 +1,46 @@
+//! Lights as written.
+
+use super::Rgb;
+use glam::Vec3;
+
+/// What the number given for a light means (LECTURE, DESIGN section 5).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum IntensityUnit {
+    /// The lecture's I_p: radiant intensity (directional: irradiance) divided by pi.
+    Lecture,
+    /// W/sr (directional: W/m^2).
+    #[default]
+    Radiometric,
+}
+
+/// Fall-off with distance d.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Attenuation {
+    /// 1 / d^2.
+    InverseSquare,
+    /// min(1, 1 / (c1 + c2 d + c3 d^2)).
+    Polynomial { c1: f32, c2: f32, c3: f32 },
+    None,
+}
+
+/// The light's shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightKind {
+    Point { position: Vec3 },
+    /// `direction`: the way the light travels, unit.
+    Directional { direction: Vec3 },
+    /// Half angles in radians, `inner <= outer`; `exponent` is Warn's p (0: none).
+    Spot { position: Vec3, direction: Vec3, inner: f32, outer: f32, exponent: f32 },
+}
+
+/// One light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    pub name: String,
+    pub kind: LightKind,
+    /// In `unit`.
+    pub intensity: Rgb,
+    pub unit: IntensityUnit,
+    pub attenuation: Attenuation,
+    pub casts_shadow: bool,
+}

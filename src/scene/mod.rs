@@ -1,0 +1,78 @@
+//! What was written: a scene as its author described it, in SI units and radians,
+//! before anything is flattened for the device. Knows nothing of devices, files' syntax
+//! lives in `load/`.
+
+pub mod camera;
+pub mod error;
+pub mod light;
+pub mod load;
+pub mod material;
+pub mod mesh;
+pub mod settings;
+pub mod shape;
+pub mod texture;
+pub mod transform;
+
+pub use camera::{Camera, Projection};
+pub use error::{Location, SceneError};
+pub use light::{Attenuation, IntensityUnit, Light, LightKind};
+pub use material::{Fresnel, Lobe, Material, Model, Transparency};
+pub use mesh::Mesh;
+pub use settings::{Background, Film, Filter, Integrator, RenderSettings, Sampler, ToneMap};
+pub use texture::{Texture, TextureData, Wrap};
+pub use transform::Transform;
+
+use glam::Vec3;
+
+/// Index into `Scene::materials`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MaterialId(pub u32);
+/// Index into `Scene::textures`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TextureId(pub u32);
+/// Index into `Scene::meshes`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MeshId(pub u32);
+
+/// Linear Rec. 709.
+pub type Rgb = Vec3;
+
+/// A whole scene. Indices in it are valid once `load` has returned it.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The file it came from, for messages.
+    pub name: String,
+    pub film: Film,
+    pub settings: RenderSettings,
+    pub camera: Camera,
+    pub background: Background,
+    /// I_a.
+    pub ambient: Rgb,
+    pub materials: Vec<Material>,
+    pub textures: Vec<Texture>,
+    pub meshes: Vec<Mesh>,
+    pub objects: Vec<Object>,
+    pub lights: Vec<Light>,
+    /// What loading dropped, replaced or ignored; printed once.
+    pub warnings: Vec<String>,
+}
+
+/// What an object shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Geometry {
+    Mesh(MeshId),
+    /// The analytic unit sphere at the origin, placed by the object's transform.
+    Sphere,
+}
+
+/// One placed thing. Several objects may share a mesh: they are instances.
+#[derive(Clone, Debug)]
+pub struct Object {
+    pub name: String,
+    pub geometry: Geometry,
+    pub transform: Transform,
+    /// Overrides the mesh's own materials; a sphere always has one.
+    pub material: Option<MaterialId>,
+    /// Overrides the material's own answer.
+    pub casts_shadow: Option<bool>,
+}

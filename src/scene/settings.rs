@@ -1,0 +1,79 @@
+//! What to compute and how the result is shown.
+
+use super::Rgb;
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// The illumination model alone; no secondary rays but optional shadows.
+    Local,
+    /// Whitted 1980: shadow, mirror and refracted rays to a depth.
+    #[default]
+    Whitted,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sampler {
+    /// Owen-scrambled Sobol' (Burley 2020).
+    #[default]
+    Sobol,
+    /// Jittered strata.
+    Stratified,
+    Independent,
+}
+
+/// Reconstruction filter; radii in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filter {
+    Box { radius: f32 },
+    Tent { radius: f32 },
+    Gaussian { radius: f32, sigma: f32 },
+    Mitchell { radius: f32, b: f32, c: f32 },
+}
+
+/// The image plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Film {
+    /// Pixels, 1 to 65,535 each.
+    pub width: u32,
+    pub height: u32,
+    pub filter: Filter,
+    /// e of `unit = 2^e`: the radiance that one film unit stands for.
+    pub unit_exponent: i32,
+    /// How the picture is displayed, unless the command line says otherwise.
+    pub tonemap: ToneMap,
+    /// In stops.
+    pub exposure: f32,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ToneMap {
+    #[default]
+    Clamp,
+    /// Divide by the image's maximum.
+    Normalise,
+    /// L / (1 + L) on luminance (Reinhard et al. 2002, equation 3).
+    Reinhard,
+}
+
+/// What a ray that leaves the scene sees: a vertical gradient, flat if both are equal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Background {
+    /// Towards -y.
+    pub bottom: Rgb,
+    /// Towards +y.
+    pub top: Rgb,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RenderSettings {
+    pub integrator: Integrator,
+    /// Samples a pixel, 1 to 2^24.
+    pub samples: u32,
+    pub seed: u32,
+    pub sampler: Sampler,
+    /// Scattering events, 0 to 64.
+    pub max_depth: u32,
+    /// Branches whose largest weight falls below this are cut (whitted).
+    pub min_weight: f32,
+    pub shadows: bool,
+}
