@@ -8,3 +8,9 @@ pub struct Rect {
     pub width: u32,
     pub height: u32,
 }
+
+/// Signed fixed-point sums per pixel of a crop (placeholder body: the film helper fills it in).
+#[derive(Clone, Debug)]
+pub struct Film {
+    pub crop: Rect,
+}

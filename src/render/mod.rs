@@ -3,7 +3,6 @@
 pub mod cpu;
 pub mod vulkan;
 
-use crate::bake::SceneData;
 use crate::film::{Film, Rect};
 use crate::layout::{Hit, PathState};
 use std::ops::Range;
