@@ -31,7 +31,7 @@ struct SceneHeader {
     float min_weight;
     uint seed;
     // `SAMPLER_*`.
-    uint sampler;
+    uint sampling;
     // For the stratified sampler: strata per axis, >= 1.
     uint strata;
     // 1 if shadow rays are traced.

@@ -34,7 +34,7 @@ pub struct SceneHeader {
     pub min_weight: f32,
     pub seed: u32,
     /// `SAMPLER_*`.
-    pub sampler: u32,
+    pub sampling: u32,
     /// For the stratified sampler: strata per axis, >= 1.
     pub strata: u32,
     /// 1 if shadow rays are traced.
