@@ -22,7 +22,7 @@ pub struct Fixed {
 
 /// Dither of one lane in 0..1, from a contribution's hash.
 pub fn dither_lane(dither: u32, lane: u32) -> f32 {
-    unit_float(hash_u32(dither + lane * 0x9e37_79b9))
+    unit_float(hash_u32(dither.wrapping_add(lane.wrapping_mul(0x9e37_79b9))))
 }
 
 /// floor(value * scale + u) as a 64-bit integer. `scale` is a power of two, u in 0..1 dithers, so that light dimmer

@@ -5,7 +5,8 @@ use crate::layout::{Batch, INVALID, PathState, Ray, SceneHeader, SceneView, T_IN
 use crate::shading::camera::camera_ray;
 use crate::shading::filter::sample_filter;
 use crate::shading::sampling::{SampleKey, sample_2d};
-use glam::{Vec3, Vec4};
+use crate::shading::spectrum::spectrum_from_rgb;
+use glam::Vec3;
 
 /// The key of a path's random numbers: they depend on nothing else.
 pub fn sample_key(header: &SceneHeader, pixel: u32, sample_index: u32, path_id: u32) -> SampleKey {
@@ -41,7 +42,7 @@ pub fn generate(scene: &SceneView, batch: &Batch, slot: u32) -> PathState {
             _pad0: 0,
             _pad1: 0,
         },
-        throughput: Vec4::splat(filter.weight),
+        throughput: spectrum_from_rgb(Vec3::splat(filter.weight)),
         slot,
         pixel,
         sample_index,
