@@ -370,22 +370,21 @@ impl Types {
     /// Name and advice if the operation is not strict.
     fn refuse(&self, instruction: &Instruction) -> Option<(String, &'static str)> {
         let op = instruction.class.opcode;
+        if op == Op::ExtInst {
+            return self.refuse_extended(instruction);
+        }
         if self
             .types_in(instruction)
             .any(|t| self.matrices.contains(&t))
         {
             return Some((format!("{op:?} on a matrix"), "write the rows as vectors"));
         }
-        match op {
-            // GLSL leaves `%` undefined where an operand is negative.
-            Op::SMod | Op::SRem => {
-                return Some((
-                    format!("{op:?}"),
-                    "undefined below zero; use unsigned operands",
-                ));
-            }
-            Op::ExtInst => return self.refuse_extended(instruction),
-            _ => {}
+        // GLSL leaves `%` undefined where an operand is negative.
+        if matches!(op, Op::SMod | Op::SRem) {
+            return Some((
+                format!("{op:?}"),
+                "undefined below zero; use unsigned operands",
+            ));
         }
         if !self.touches_float(instruction) || ARITHMETIC.contains(&op) || EXACT.contains(&op) {
             return None;

@@ -117,3 +117,88 @@ fn entry_point(words: &[u32]) -> (u32, usize) {
     }
     panic!("a kernel without an entry point");
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rspirv::dr::{Module, Operand, load_words};
+
+    fn module() -> &'static [u32] {
+        kernel("parity/layout", Fetch::Storage).expect("the layout kernel is always there")
+    }
+
+    /// Capabilities and (entry point, mode, width) the second module has and the first has not.
+    fn added(before: &Module, after: &Module) -> (Vec<Operand>, Vec<Vec<Operand>>) {
+        let capabilities = after
+            .capabilities
+            .iter()
+            .filter(|i| !before.capabilities.contains(i));
+        let modes = after
+            .execution_modes
+            .iter()
+            .filter(|i| !before.execution_modes.contains(i));
+        (
+            capabilities.map(|i| i.operands[0].clone()).collect(),
+            modes.map(|i| i.operands.clone()).collect(),
+        )
+    }
+
+    #[test]
+    fn each_float_control_adds_its_capability_and_mode_and_nothing_else() {
+        let before = load_words(module()).expect("valid");
+        let entry = before.entry_points[0].operands[1].clone();
+        for bits in 0..8 {
+            let controls = FloatControls {
+                rounding_rte: bits & 1 != 0,
+                signed_zero_inf_nan_preserve: bits & 2 != 0,
+                denorm_preserve: bits & 4 != 0,
+            };
+            let (mut capabilities, mut modes) = (Vec::new(), Vec::new());
+            let mut expect = |on, capability, mode| {
+                if on {
+                    capabilities.push(Operand::Capability(capability));
+                    let mode = Operand::ExecutionMode(mode);
+                    modes.push(vec![entry.clone(), mode, Operand::LiteralBit32(32)]);
+                }
+            };
+            use {Capability as C, ExecutionMode as M};
+            expect(
+                controls.denorm_preserve,
+                C::DenormPreserve,
+                M::DenormPreserve,
+            );
+            let preserve = controls.signed_zero_inf_nan_preserve;
+            expect(
+                preserve,
+                C::SignedZeroInfNanPreserve,
+                M::SignedZeroInfNanPreserve,
+            );
+            expect(
+                controls.rounding_rte,
+                C::RoundingModeRTE,
+                M::RoundingModeRTE,
+            );
+
+            let words = with_float_controls(module(), controls);
+            let after = load_words(&words).expect("still valid");
+            assert_eq!(
+                added(&before, &after),
+                (capabilities, modes),
+                "{controls:?}"
+            );
+            assert_eq!(words.len(), module().len() + bits_set(bits) * (2 + 4));
+        }
+    }
+
+    fn bits_set(bits: u32) -> usize {
+        bits.count_ones() as usize
+    }
+
+    #[test]
+    fn no_float_control_leaves_the_module_as_it_is() {
+        assert_eq!(
+            with_float_controls(module(), FloatControls::default()),
+            module()
+        );
+    }
+}
