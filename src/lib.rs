@@ -13,3 +13,4 @@ pub mod shaders;
 pub mod shading;
 pub mod trace;
 pub mod transport;
+pub mod verify;

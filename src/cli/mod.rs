@@ -4,6 +4,7 @@ pub mod compare;
 pub mod devices;
 mod interrupt;
 pub mod merge;
+mod output;
 pub mod parity;
 mod progress;
 pub mod render;
