@@ -3,8 +3,9 @@
 pub mod math;
 
 use super::inputs::{ARGUMENTS, Domain, arguments};
-use crate::render::vulkan::Context;
 use crate::render::RenderError;
+use crate::render::vulkan::{BufferSpec, Context};
+use crate::shaders::{Fetch, kernel};
 use glam::{Vec2, Vec3, Vec4};
 
 /// Words of results one evaluation gives.
@@ -103,7 +104,12 @@ fn same(a: u32, b: u32) -> bool {
 pub fn compare(context: &mut Context, family: &Family, number: usize, count: usize, seed: u32) -> Result<(usize, Option<Mismatch>), RenderError> {
     let twin = &family.twins[number];
     let inputs = arguments(twin.domains, count, seed);
-    let device = context.evaluate(family.kernel, number as u32, &inputs, count * RESULTS)?;
+    let words = kernel(family.kernel, Fetch::Storage).expect("every family names an embedded kernel");
+    let buffers = [BufferSpec::Input(bytemuck::cast_slice(&inputs)), BufferSpec::Output((count * RESULTS * 4) as u64)];
+    let choice = [number as u32, count as u32];
+    let groups = count.div_ceil(64) as u32;
+    let outputs = context.run_kernel(family.kernel, words, &buffers, bytemuck::cast_slice(&choice), groups)?;
+    let device: Vec<u32> = outputs[0].chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
     let mut differ = 0;
     let mut first = None;
     for (set, device) in inputs.chunks(ARGUMENTS).zip(device.chunks(RESULTS)) {
