@@ -2,7 +2,7 @@
 
 use crate::film::display::tonemap_from_name;
 use crate::film::read::read_film;
-use crate::film::write::{self, Depth, Format, Settings};
+use crate::film::write::{Aov, Format, Picture};
 use crate::film::{FilmError, OutputFile};
 use crate::scene::ToneMap;
 use anyhow::{Context, Result};
@@ -25,9 +25,9 @@ pub struct MergeArgs {
     /// Format, where the output's name does not tell: png, exr, hdr, gfilm
     #[arg(long, value_name = "NAME", value_parser = format_name)]
     pub format: Option<Format>,
-    /// Bits of a PNG: 8 or 16
-    #[arg(long, value_name = "BITS", value_parser = bits, default_value = "8")]
-    pub bits: Depth,
+    /// Bits a channel of a PNG
+    #[arg(long, default_value = "8", value_parser = ["8", "16"])]
+    pub bits: String,
     /// Exposure of a PNG in stops [default: the film's]
     #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = stops)]
     pub exposure: Option<f32>,
@@ -38,14 +38,6 @@ pub struct MergeArgs {
 
 fn format_name(name: &str) -> Result<Format, String> {
     Format::from_name(name).ok_or_else(|| "allowed: png, exr, hdr, gfilm".into())
-}
-
-fn bits(text: &str) -> Result<Depth, String> {
-    match text {
-        "8" => Ok(Depth::Eight),
-        "16" => Ok(Depth::Sixteen),
-        _ => Err("allowed: 8, 16".into()),
-    }
 }
 
 fn stops(text: &str) -> Result<f32, String> {
@@ -68,9 +60,9 @@ pub fn run(args: &MergeArgs) -> Result<ExitCode> {
     }
     let format = match args.format {
         Some(format) => format,
-        None => Format::from_path(&args.output)?,
+        None => Format::of(&args.output)?,
     };
-    let output = OutputFile::open(&args.output)?;
+    let mut output = OutputFile::open(&args.output)?;
     let mut paths = args.films.iter();
     let first = paths.next().context("no film given")?;
     let mut film = read_film(first)?;
@@ -87,12 +79,22 @@ pub fn run(args: &MergeArgs) -> Result<ExitCode> {
             );
         }
     }
-    let mut settings = Settings::of(&film, format);
-    settings.depth = args.bits;
-    settings.display.exposure = args.exposure.unwrap_or(settings.display.exposure);
-    settings.display.tonemap = args.tonemap.unwrap_or(settings.display.tonemap);
+    let tonemap = args.tonemap.unwrap_or(film.spec().tonemap);
+    film.set_display(tonemap, args.exposure.unwrap_or(film.spec().exposure));
+    let layers = Aov::ALL.map(|(_, aov)| aov);
+    let aovs = if film.spec().aovs {
+        layers.as_slice()
+    } else {
+        &[]
+    };
+    let picture = Picture {
+        format,
+        sixteen_bit: args.bits == "16",
+        aovs,
+    };
+    picture.write(&film, &mut output)?;
     let piped = output.is_stdout();
-    write::write_file(&film, &settings, output)?;
+    output.commit()?;
     let report = format!("film {}\nsamples {}\n", film.hash(), film.samples());
     // stdout carries results only, and one at a time.
     match piped {
