@@ -45,15 +45,8 @@ pub fn teapot_control_points() -> [Patch; TEAPOT_PATCHES] {
         // y up: (x, y, z) becomes (x, z, -y); the half at y <= 0 then lies at z >= 0.
         let near = half.map(|row| row.map(|[x, y, z]| DVec3::new(x, z, -y)));
         let far = near.map(|row| row.map(|p| DVec3::new(p.x, p.y, 0.0 - p.z)));
-        // Which of the two halves is the right way out as given depends on the direction of the rows: away from the body
-        // and back for the handle, away from the body for the spout.
-        let mirror = |patch: Patch| patch.map(|[a, b, c, d]| [d, c, b, a]);
-        let spout = near[0][0].x > 0.0;
-        let (near, far) = if spout {
-            (mirror(near), far)
-        } else {
-            (near, mirror(far))
-        };
+        // The mirror image is inside out until its rows run the other way.
+        let far = far.map(|[a, b, c, d]| [d, c, b, a]);
         *next.next().expect("32 patches") = near;
         *next.next().expect("32 patches") = far;
     }
