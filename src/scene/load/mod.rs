@@ -1,1 +1,5 @@
-
+mod bounds;
+pub mod image;
+pub mod ply;
+mod polygon;
+pub mod staging;
