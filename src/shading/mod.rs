@@ -18,6 +18,7 @@
 pub mod blinn_phong;
 pub mod cook_torrance;
 pub mod dielectric;
+pub mod frame;
 pub mod fresnel;
 pub mod lambert;
 pub mod light;
@@ -26,4 +27,5 @@ pub mod material;
 pub mod math;
 pub mod microfacet;
 pub mod phong;
+pub mod spectrum;
 pub mod texture;
