@@ -63,14 +63,15 @@ pub struct SceneHeader {
     pub first_table: u32,
     /// 2^film scale: k + e of the fixed-point film (strict rule 8), as a float power of two.
     pub film_scale: f32,
-    /// Clamp of one sample's sum, 2^C, in film units (radiance * 2^-unit).
-    pub film_limit: f32,
+    /// 1 if the camera does not see the background (it still lights mirrors and glass).
+    pub hide_background: u32,
     /// 1 if auxiliary values are recorded.
     pub aovs: u32,
+    /// Relative widening of the top level's box test (`approx_intersect_node`): covers the rounding of rays in object space.
+    pub top_margin: f32,
     pub _pad0: u32,
     pub _pad1: u32,
     pub _pad2: u32,
-    pub _pad3: u32,
 }
 
 /// Intervals in the tabulated filter's inverse CDF.
