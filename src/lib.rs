@@ -9,6 +9,8 @@ pub mod film;
 pub mod layout;
 pub mod render;
 pub mod scene;
+pub mod shaders;
 pub mod shading;
 pub mod trace;
 pub mod transport;
+pub mod verify;

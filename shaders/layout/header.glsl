@@ -60,8 +60,8 @@ struct SceneHeader {
     uint first_table;
     // 2^film scale: k + e of the fixed-point film (strict rule 8), as a float power of two.
     float film_scale;
-    // Clamp of one sample's sum, 2^C, in film units (radiance * 2^-unit).
-    float film_limit;
+    // 1 if the camera does not see the background (it still lights mirrors and glass).
+    uint hide_background;
     // 1 if auxiliary values are recorded.
     uint aovs;
     uint pad0;

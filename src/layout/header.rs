@@ -63,8 +63,8 @@ pub struct SceneHeader {
     pub first_table: u32,
     /// 2^film scale: k + e of the fixed-point film (strict rule 8), as a float power of two.
     pub film_scale: f32,
-    /// Clamp of one sample's sum, 2^C, in film units (radiance * 2^-unit).
-    pub film_limit: f32,
+    /// 1 if the camera does not see the background (it still lights mirrors and glass).
+    pub hide_background: u32,
     /// 1 if auxiliary values are recorded.
     pub aovs: u32,
     pub _pad0: u32,

@@ -1,1 +1,18 @@
+//! Light at a point: mathematics, sampling, models, lights, textures, camera; twins in `shaders/shading/`.
+//!
+//! Conventions of light:
+//!
+//! * Directions `wo` (to the viewer), `wi` (to the light), `wm` (microfacet normal) are unit and leave the surface.
+//! * Local frame: z is the shading normal. `cos_theta(w) = w.z`.
+//! * `eval_x(material, wo, wi)` returns BRDF times cosine (|wi.z|), per steradian; zero unless wo and wi are on the
+//!   upper side.
+//! * `sample_x(material, wo, u)` returns a direction and its pdf; `pdf_x(material, wo, wi)` is per solid angle.
+//! * Radiometric units: a light gives `LightSample.radiance` = the factor L such that outgoing radiance is `eval * L`
+//!   (intensity times attenuation). Phong as printed, I = k_s I_p (V.R)^n with I_p = intensity / pi, is
+//!   `eval = k_s O_s (V.R)^n / pi`; the lecture's k_d I_p (N.L) is `k_d O_d / pi * cos`.
+//! * `eta` = index on the transmitted side over index on the incident side only in `Refraction` results; in records it
+//!   is the index of the medium relative to the outside.
+//! * `roughness` is what users write; `alpha`/`m` is what distributions take.
+//! * `Spectrum` is `vec4`/`Vec4`: lanes 0-2 are linear Rec. 709 in RGB mode, lane 3 is 0.
 
+pub mod math;

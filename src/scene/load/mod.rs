@@ -1,10 +1,10 @@
 //! Scene files: one file or folder per format.
 
+mod bounds;
 pub mod image;
 pub mod obj;
-mod polygon;
 pub mod ply;
-pub mod gltf;
+mod polygon;
 pub mod staging;
 mod text;
 pub mod toml;
@@ -37,7 +37,6 @@ pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
 fn load_file(path: &Path) -> Result<Scene, SceneError> {
     match extension(path).as_str() {
         "obj" => obj::load(path),
-        "gltf" | "glb" => gltf::load(path),
         "ply" => ply::load(path),
         found => {
             let found = if found.is_empty() { "no extension".to_owned() } else { format!(".{found}") };

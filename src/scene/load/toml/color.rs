@@ -4,6 +4,7 @@ use super::document::{Node, Value};
 use super::keys::Range;
 use super::reader::{in_range, numbers};
 use crate::scene::Rgb;
+use crate::scene::load::image::srgb_to_linear;
 
 /// The CSS Color Module Level 4 values of the common names, sRGB.
 const NAMES: &[(&str, u32)] = &[
@@ -53,11 +54,6 @@ fn srgb_text(text: &str) -> Option<[u8; 3]> {
     };
     let [_, r, g, b] = code.to_be_bytes();
     Some([r, g, b])
-}
-
-/// The sRGB decoding of IEC 61966-2-1; both sides in 0 to 1.
-fn srgb_to_linear(code: f64) -> f64 {
-    if code <= 0.04045 { code / 12.92 } else { libm::pow((code + 0.055) / 1.055, 2.4) }
 }
 
 #[cfg(test)]
