@@ -1,9 +1,9 @@
 // Division, roots and the elementary functions from `+ - *` and bit operations alone.
 //
 // Vulkan rounds `+ - *` and conversions correctly and promises little about the rest, so the rest is here, once a
-// language (ARCHITECTURE.md, "Strict arithmetic"). Every function is total: outside its stated domain it returns the
-// stated value, for NaN as well, and it returns NaN for no input. Errors are bounds over the whole domain, in ULP of
-// the true result or as stated, proved by `tests/math.rs`.
+// language (ARCHITECTURE.md, "Strict arithmetic"). The functions are total: outside its domain each returns the stated
+// value, and none makes a NaN. Errors are bounds over the whole domain, in ULP of the true result or as stated,
+// proved by `tests/math.rs`.
 //
 // Devices may flush subnormal numbers to zero, also those inside a formula. Division and roots therefore work on
 // magnitudes from `TINY` to `HUGE` only, where none occurs.
@@ -106,10 +106,11 @@ float sqrt_(float x) {
     return x >= TINY && x <= HUGE ? refined : 0.0;
 }
 
-// sin(2 pi u) for |u| <= 0.25: minimax polynomial of degree 9, relative error 2.9e-8 before rounding.
+// sin(2 pi u) for |u| <= 0.25: minimax polynomial of degree 9, relative error 2.9e-8 before rounding; at most 1.
 float sin_quarter(float u) {
     float z = u * u;
-    return u * (6.28318548 + z * (-41.3417664 + z * (81.6086349 + z * (-76.7279816 + z * 40.8759079))));
+    float sine = u * (6.28318548 + z * (-41.3417664 + z * (81.6086349 + z * (-76.7279816 + z * 40.8759079))));
+    return sine < 1.0 ? sine : 1.0;
 }
 
 // The part of x turns that remains without whole turns, -0.5..0.5; 0 if |x| > 2^22.
@@ -133,12 +134,12 @@ float sin_fraction(float r) {
     return r < 0.0 ? -folded : folded;
 }
 
-// sin(2 pi x), -1..1, within 1.3e-7 for |x| <= 2^22 turns; beyond as for 0.
+// sin(2 pi x), -1..1, within 2e-7 for |x| <= 2^22 turns; beyond as for 0.
 float sin_turns(float x) {
     return sin_fraction(turn_fraction(x));
 }
 
-// cos(2 pi x), -1..1, within 1.3e-7 for |x| <= 2^22 turns; beyond as for 0.
+// cos(2 pi x), -1..1, within 2e-7 for |x| <= 2^22 turns; beyond as for 0.
 float cos_turns(float x) {
     return sin_quarter(0.25 - abs(turn_fraction(x)));
 }
@@ -207,7 +208,7 @@ LogParts log_parts(float x) {
     return LogParts(float(exponent), f, (square * f) * p - 0.5 * square);
 }
 
-// Binary logarithm within 2.5 ULP for x >= 2^-126; -126 below, 128 for infinity and NaN.
+// Binary logarithm within 2.5 ULP for x >= 2^-126; -126 below, 128 for infinity; one of them for NaN.
 float log2_(float x) {
     LogParts parts = log_parts(x);
     return parts.exponent + (parts.f + parts.rest) * LOG2_E;
@@ -325,10 +326,11 @@ float length3(vec3 v) {
 // else the zero vector.
 vec3 normalize3(vec3 v) {
     float largest = max3_(vec3(abs(v.x), abs(v.y), abs(v.z)));
-    // A power of two that brings the largest component to 1..2, so that squares neither overflow nor vanish.
     bool valid = largest >= TINY && largest <= HUGE;
-    vec3 scaled = v * uintBitsToFloat(valid ? 0x7f000000u - (floatBitsToUint(largest) & 0x7f800000u) : 0u);
-    return scaled * rsqrt(dot3(scaled, scaled));
+    // A power of two that brings the largest component to 1..2, so that squares neither overflow nor vanish.
+    vec3 scaled = v * uintBitsToFloat(0x7f000000u - (floatBitsToUint(largest) & 0x7f800000u));
+    float square = dot3(scaled, scaled);
+    return valid && square <= 12.0 ? scaled * rsqrt(square) : vec3(0.0);
 }
 
 #endif

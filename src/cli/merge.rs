@@ -2,6 +2,7 @@
 
 use super::output::OutputFlags;
 use crate::film::read::read_film;
+use crate::film::write::Aov;
 use crate::film::{FilmError, OutputFile};
 use anyhow::{Context, Result};
 use clap::Args;
@@ -45,12 +46,14 @@ pub fn run(args: &MergeArgs) -> Result<ExitCode> {
             .map_err(|error| FilmError::bad(path, format!("cannot be merged: {error}")))?;
         if other.spec().version != film.spec().version {
             let (here, there) = (&film.spec().version, &other.spec().version);
-            log::warn!("{}: made by gonio {there}, {} by gonio {here}",
+            log::warn!(
+                "{}: made by gonio {there}, {} by gonio {here}",
                 path.display(),
                 first.display()
             );
         }
     }
-    args.picture.write(&film, format, output)?;
+    let layers = if film.spec().aovs { Aov::ALL.map(|(_, aov)| aov).to_vec() } else { Vec::new() };
+    args.picture.write(&mut film, format, &layers, output)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -128,7 +128,7 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let outcome = render_passes(renderer.as_mut(), crop, samples, args.time, &mut film, &interrupt, show_progress)?;
     report(&film);
 
-    args.picture.write(&film, format, output)?;
+    args.picture.write(&mut film, format, &args.aov, output)?;
     if let Some(mut file) = stats_file {
         let stats = stats_json(args, &data, &film, renderer.as_ref(), &outcome, bake_time);
         writeln!(file, "{stats:#}")?;
