@@ -161,7 +161,7 @@ impl VulkanRenderer {
         let (sums, aovs) = (queues.film.clone(), queues.aovs.clone());
         film.add_sums(band, &self.download::<FilmSum>(&sums, band.area())?);
         if self.header.aovs != 0 {
-            film.add_aovs(band, &self.download::<AovPixel>(&aovs, band.area())?, &job.samples);
+            film.add_aovs(band, &self.download::<AovPixel>(&aovs, band.area())?, job.samples.contains(&0));
         }
         Ok(())
     }
