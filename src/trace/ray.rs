@@ -9,6 +9,8 @@ use glam::{Vec3, Vec4};
 const DIRECTION_LEAST: f32 = 9.094947e-13;
 /// Farther away than this (2^40), in units of the level, nothing is hit: products of three lengths stay finite.
 const ORIGIN_LIMIT: f32 = 1.0995116e12;
+/// 2^-60.
+const DUST: f32 = 8.6736174e-19;
 
 /// A ray in world space or in an instance's object space, with what the box and triangle tests need of it.
 #[derive(Clone, Copy, Debug)]
@@ -112,7 +114,6 @@ pub fn transform_transposed(m: [Vec4; 3], v: Vec3) -> Vec3 {
 /// so few bits that the survival of subnormals could matter.
 #[inline(always)]
 fn without_dust(p: Vec3) -> Vec3 {
-    const DUST: f32 = 8.6736174e-19;
     Vec3::new(
         if p.x.abs() < DUST { 0.0 } else { p.x },
         if p.y.abs() < DUST { 0.0 } else { p.y },

@@ -2,12 +2,9 @@
 
 use super::ray::{object_origin, transform_point, transform_transposed, transform_vector};
 use crate::layout::{Hit, INVALID, Instance, KIND_SPHERE, Ray, SceneView, load_face, load_instance, load_vertex};
-use crate::shading::math::{acos_, atan2_, clamp_, cross3, dot3, max_, normalize3};
+use crate::shading::math::{INV_PI, INV_TWO_PI, acos_, atan2_, clamp_, cross3, dot3, max_, normalize3};
 use glam::{Vec2, Vec3};
 
-/// 1 / pi and 1 / (2 pi).
-const INV_PI: f32 = 0.31830987;
-const INV_TWO_PI: f32 = 0.15915494;
 /// 2^-19: bound of a surface point's error relative to the size of the numbers it was made from (32 roundings: the
 /// point's own, and those of bringing it into object space again).
 const POSITION_ERROR: f32 = 1.9073486e-6;

@@ -142,13 +142,12 @@ fn traverse(scene: &SceneView, ray: &Ray, shadow: bool, deepest: &mut u32) -> Hi
                 margin = scene.header.top_margin;
             }
             if height == 0 {
-                break;
+                return hit;
             }
             height -= 1;
             group = stack[height as usize];
         }
     }
-    hit
 }
 
 /// Puts a group aside. Bake has proved that the stack is high enough.

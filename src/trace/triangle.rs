@@ -8,6 +8,8 @@ use glam::Vec3;
 /// Edge functions smaller than this (2^-86) count as 0, "on the edge": their products may have lost bits to subnormals.
 const EDGE_LEAST: f32 = 1.2924697e-26;
 
+const TRIANGLE_MISS: Vec3 = Vec3::new(-1.0, 0.0, 0.0);
+
 /// Twice the signed area of (p, q) as seen along the ray. `signed_area(q, p)` is exactly its negative, so a ray
 /// between two triangles that share an edge is on one side for one of them.
 #[inline(always)]
@@ -24,7 +26,6 @@ fn signed_area(px: f32, py: f32, qx: f32, qy: f32) -> f32 {
 /// box (`box_interval`), where it is except for triangles seen so edge-on that their weights are rounding noise.
 #[inline(always)]
 pub fn intersect_triangle(ray: &LevelRay, v0: Vec3, v1: Vec3, v2: Vec3) -> Vec3 {
-    const MISS: Vec3 = Vec3::new(-1.0, 0.0, 0.0);
     let a = v0 - ray.origin;
     let b = v1 - ray.origin;
     let c = v2 - ray.origin;
@@ -43,11 +44,11 @@ pub fn intersect_triangle(ray: &LevelRay, v0: Vec3, v1: Vec3, v2: Vec3) -> Vec3 
     let v = signed_area(ax, ay, cx, cy);
     let w = signed_area(bx, by, ax, ay);
     if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
-        return MISS;
+        return TRIANGLE_MISS;
     }
     let sum = (u + v) + w;
     if sum == 0.0 {
-        return MISS;
+        return TRIANGLE_MISS;
     }
     let scale = rcp(sum);
     // rcp may err by an ulp: a weight is at most 1.
@@ -58,8 +59,8 @@ pub fn intersect_triangle(ray: &LevelRay, v0: Vec3, v1: Vec3, v2: Vec3) -> Vec3 
     let high = Vec3::new(max_(max_(a.x, b.x), c.x), max_(max_(a.y, b.y), c.y), max_(max_(a.z, b.z), c.z));
     let interval = box_interval(ray, low, high);
     if interval.x > interval.y {
-        return MISS;
+        return TRIANGLE_MISS;
     }
     let t = clamp_(((b0 * az + b1 * bz) + b2 * cz) * ray.sz, interval.x, interval.y);
-    if t > 0.0 { Vec3::new(t, b1, b2) } else { MISS }
+    if t > 0.0 { Vec3::new(t, b1, b2) } else { TRIANGLE_MISS }
 }
