@@ -88,7 +88,10 @@ impl Source {
     /// The code with the bodies of items under `#[cfg(test)]` and of functions named `approx_*` blanked.
     pub fn strict_code(&self) -> String {
         let mut code = self.code.clone();
-        let tests = self.code.match_indices("#[cfg(test)]").filter_map(|(at, attribute)| body(&self.code, at + attribute.len()));
+        let tests = self
+            .code
+            .match_indices("#[cfg(test)]")
+            .filter_map(|(at, attribute)| body(&self.code, at + attribute.len()));
         let approximate = self.functions().into_iter().filter(|f| f.name.starts_with("approx_")).map(|f| f.body);
         for range in tests.chain(approximate) {
             let blank = blanked(&code[range.clone()]);
@@ -288,7 +291,8 @@ pub fn tokens(code: &str) -> Vec<Token<'_>> {
 }
 
 const OPERATORS: [&str; 20] = [
-    "+=", "-=", "*=", "/=", "%=", "==", "!=", "<=", ">=", "&&", "||", "<<", ">>", "->", "=>", "::", "..", "++", "--", "^=",
+    "+=", "-=", "*=", "/=", "%=", "==", "!=", "<=", ">=", "&&", "||", "<<", ">>", "->", "=>", "::", "..", "++", "--",
+    "^=",
 ];
 
 fn number_length(text: &str) -> usize {

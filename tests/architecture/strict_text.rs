@@ -28,7 +28,8 @@ fn divisions(file: &Source) -> Vec<String> {
     let is_operator = |token: &Token| matches!(token.text, "/" | "/=" | "%" | "%=");
     let mut found = Vec::new();
     for (i, token) in tokens.iter().enumerate().filter(|(_, token)| is_operator(token)) {
-        let is_integer = |at: Option<usize>| at.and_then(|at| tokens.get(at)).is_some_and(|t| is_integer_literal(t.text));
+        let is_integer =
+            |at: Option<usize>| at.and_then(|at| tokens.get(at)).is_some_and(|t| is_integer_literal(t.text));
         // Rust converts nothing, so one integer operand makes both integers.
         let literal = is_integer(i.checked_sub(1)) || is_integer(Some(i + 1));
         if !literal && !file.line(token.at).contains(INTEGER_MARK) {
@@ -63,8 +64,8 @@ fn a_division_is_seen_wherever_floats_may_be_divided() {
 fn foreign_words(file: &Source) -> Vec<String> {
     let code = file.strict_code();
     let foreign = set(&[
-        "f64", "libm", "Mat2", "Mat3", "Mat3A", "Mat4", "Affine2", "Affine3", "Affine3A", "Quat", "Vec3A", "DVec2", "DVec3",
-        "DVec4", "DMat3", "DMat4",
+        "f64", "libm", "Mat2", "Mat3", "Mat3A", "Mat4", "Affine2", "Affine3", "Affine3A", "Quat", "Vec3A", "DVec2",
+        "DVec3", "DVec4", "DMat3", "DMat4",
     ]);
     let tokens = tokens(&code);
     let mut found = Vec::new();
@@ -159,12 +160,15 @@ fn arithmetic_on_constants_is_seen_and_arithmetic_on_values_is_not() {
         let constants = float_constants(std::slice::from_ref(&file));
         folded(&file, &constants).len()
     };
-    for constant in ["2.0 * PI", "1.0 / 3.0", "x + 2.0 * PI", "x * (1.0 - PI)", "-1.0 + 2.0", "PI - -1.0e-3", "PI * (PI + x)"]
+    for constant in
+        ["2.0 * PI", "1.0 / 3.0", "x + 2.0 * PI", "x * (1.0 - PI)", "-1.0 + 2.0", "PI - -1.0e-3", "PI * (PI + x)"]
     {
         // The last is no constant, but nobody can tell at a glance either.
         assert_eq!(count(constant), 1, "{constant}");
     }
-    for value in ["x * 2.0 + 1.0", "x + PI - 1.0", "1.0 + 2.0 * x", "x * PI * 2.0", "PI * x", "-PI", "min(1.0, 2.0) * x"] {
+    for value in
+        ["x * 2.0 + 1.0", "x + PI - 1.0", "1.0 + 2.0 * x", "x * PI * 2.0", "PI * x", "-PI", "min(1.0, 2.0) * x"]
+    {
         assert_eq!(count(value), 0, "{value}");
     }
 }
