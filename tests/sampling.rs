@@ -390,5 +390,12 @@ fn the_first_values_stay_what_they_are() {
         [5660989, 11887737, 14707291],
     ];
     assert_eq!(got, want);
-    assert_eq!((hash_u32(1), hash_combine(1, 2), dither_hash(key(0, 0, 0), 0)), (0, 0, 0));
+    assert_eq!(
+        (
+            hash_u32(1),
+            hash_combine(1, 2),
+            dither_hash(key(0, 0, 0), 0)
+        ),
+        (114555507, 3470671210, 1243672428)
+    );
 }
