@@ -5,6 +5,7 @@
 
 mod bvh;
 pub mod data;
+pub mod filter;
 mod geometry;
 mod instance;
 mod material;

@@ -15,6 +15,10 @@
 //! * `roughness` is what users write; `alpha`/`m` is what distributions take.
 //! * `Spectrum` is `vec4`/`Vec4`: lanes 0-2 are linear Rec. 709 in RGB mode, lane 3 is 0.
 
+pub mod camera;
+pub mod filter;
 pub mod frame;
 pub mod math;
+pub mod sampling;
 pub mod spectrum;
+pub mod warp;
