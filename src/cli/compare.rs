@@ -82,7 +82,7 @@ pub fn run(args: &CompareArgs) -> Result<ExitCode> {
 }
 
 fn open_heatmap(path: &Path) -> Result<OutputFile, FilmError> {
-    match write::Format::from_path(path)? {
+    match write::Format::of(path)? {
         write::Format::Png => OutputFile::open(path),
         _ => Err(FilmError::Usage(format!(
             "{}: a heat map is a .png file",

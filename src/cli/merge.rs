@@ -1,13 +1,11 @@
 //! `gonio merge`: one film of several.
 
-use crate::film::display::tonemap_from_name;
+use super::output::OutputFlags;
 use crate::film::read::read_film;
-use crate::film::write::{self, Depth, Format, Settings};
+use crate::film::write::Aov;
 use crate::film::{FilmError, OutputFile};
-use crate::scene::ToneMap;
 use anyhow::{Context, Result};
 use clap::Args;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -22,37 +20,8 @@ pub struct MergeArgs {
     /// What to write: .gfilm, .png, .exr or .hdr; `-` is standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Format, where the output's name does not tell: png, exr, hdr, gfilm
-    #[arg(long, value_name = "NAME", value_parser = format_name)]
-    pub format: Option<Format>,
-    /// Bits of a PNG: 8 or 16
-    #[arg(long, value_name = "BITS", value_parser = bits, default_value = "8")]
-    pub bits: Depth,
-    /// Exposure of a PNG in stops [default: the film's]
-    #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = stops)]
-    pub exposure: Option<f32>,
-    /// Tone curve of a PNG: clamp, normalise, reinhard [default: the film's]
-    #[arg(long, value_name = "NAME", value_parser = tonemap_from_name)]
-    pub tonemap: Option<ToneMap>,
-}
-
-fn format_name(name: &str) -> Result<Format, String> {
-    Format::from_name(name).ok_or_else(|| "allowed: png, exr, hdr, gfilm".into())
-}
-
-fn bits(text: &str) -> Result<Depth, String> {
-    match text {
-        "8" => Ok(Depth::Eight),
-        "16" => Ok(Depth::Sixteen),
-        _ => Err("allowed: 8, 16".into()),
-    }
-}
-
-fn stops(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(value) if (-100.0..=100.0).contains(&value) => Ok(value),
-        _ => Err("expected stops from -100 to 100".into()),
-    }
+    #[command(flatten)]
+    pub picture: OutputFlags,
 }
 
 /// Runs the subcommand.
@@ -66,10 +35,7 @@ pub fn run(args: &MergeArgs) -> Result<ExitCode> {
     {
         return Err(FilmError::Usage("only one film can be standard input".into()).into());
     }
-    let format = match args.format {
-        Some(format) => format,
-        None => Format::from_path(&args.output)?,
-    };
+    let format = args.picture.format_of(&args.output)?;
     let output = OutputFile::open(&args.output)?;
     let mut paths = args.films.iter();
     let first = paths.next().context("no film given")?;
@@ -80,26 +46,14 @@ pub fn run(args: &MergeArgs) -> Result<ExitCode> {
             .map_err(|error| FilmError::bad(path, format!("cannot be merged: {error}")))?;
         if other.spec().version != film.spec().version {
             let (here, there) = (&film.spec().version, &other.spec().version);
-            eprintln!(
-                "warning: {}: made by gonio {there}, {} by gonio {here}",
+            log::warn!(
+                "{}: made by gonio {there}, {} by gonio {here}",
                 path.display(),
                 first.display()
             );
         }
     }
-    let mut settings = Settings::of(&film, format);
-    settings.depth = args.bits;
-    settings.display.exposure = args.exposure.unwrap_or(settings.display.exposure);
-    settings.display.tonemap = args.tonemap.unwrap_or(settings.display.tonemap);
-    let piped = output.is_stdout();
-    write::write_file(&film, &settings, output)?;
-    let report = format!("film {}\nsamples {}\n", film.hash(), film.samples());
-    // stdout carries results only, and one at a time.
-    match piped {
-        true => eprint!("{report}"),
-        false => std::io::stdout()
-            .write_all(report.as_bytes())
-            .context("cannot write standard output")?,
-    }
+    let layers = if film.spec().aovs { Aov::ALL.map(|(_, aov)| aov).to_vec() } else { Vec::new() };
+    args.picture.write(&mut film, format, &layers, output)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,14 +1,15 @@
 //! `gonio render`: a picture of a scene.
 
 use super::interrupt::Interrupt;
+use super::output::OutputFlags;
 use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, crop_of, film_of};
 use super::{Usage, progress};
 use crate::bake::SceneData;
-use crate::film::write::{Aov, Format, Picture};
+use crate::film::write::{Aov, Format};
 use crate::film::{Film, OutputFile, Rect};
 use crate::render::{Bounce, Counters, Job, Renderer, Watch};
-use crate::scene::{Scene, ToneMap};
-use clap::{Args, ValueEnum};
+use crate::scene::Scene;
+use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -43,15 +44,6 @@ pub struct RenderArgs {
     /// Stop at the end of the pass during which this time runs out.
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time: Option<Duration>,
-    /// Exposure in stops, instead of the scene's.
-    #[arg(long, value_name = "EV", allow_hyphen_values = true)]
-    exposure: Option<f32>,
-    /// Tone curve, instead of the scene's.
-    #[arg(long)]
-    tonemap: Option<ToneMapName>,
-    /// Bits a channel of a PNG.
-    #[arg(long, default_value = "8", value_parser = ["8", "16"])]
-    bits: String,
     /// Further layers of an EXR, separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     aov: Vec<Aov>,
@@ -67,14 +59,9 @@ pub struct RenderArgs {
     #[command(flatten)]
     scene_flags: SceneFlags,
     #[command(flatten)]
+    picture: OutputFlags,
+    #[command(flatten)]
     backend: BackendFlags,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum ToneMapName {
-    Clamp,
-    Normalise,
-    Reinhard,
 }
 
 /// `A..B`.
@@ -108,27 +95,18 @@ struct Outcome {
 
 pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
-    let mut scene = args.scene_flags.load(&args.scene)?;
-    if let Some(exposure) = args.exposure {
-        scene.film.exposure = exposure;
-    }
-    match args.tonemap {
-        Some(ToneMapName::Clamp) => scene.film.tonemap = ToneMap::Clamp,
-        Some(ToneMapName::Normalise) => scene.film.tonemap = ToneMap::Normalise,
-        Some(ToneMapName::Reinhard) => scene.film.tonemap = ToneMap::Reinhard,
-        None => {}
-    }
+    let scene = args.scene_flags.load(&args.scene)?;
     let crop = crop_of(&scene, args.crop)?;
     if let Some(pixel) = args.pixel {
         return inspect(args, &scene, pixel);
     }
     // Opened first: a bad path must not cost a render.
     let path = args.output.clone().unwrap_or_else(|| default_output(&args.scene));
-    let format = Format::of(&path)?;
-    if !args.aov.is_empty() && !format.has_layers() {
+    let format = args.picture.format_of(&path)?;
+    if !args.aov.is_empty() && !matches!(format, Format::Exr | Format::Gfilm) {
         return Err(Usage(format!("--aov needs an .exr (or .gfilm) file, not {}", path.display())).into());
     }
-    let mut output = OutputFile::open(&path)?;
+    let output = OutputFile::open(&path)?;
     let stats_file = args.stats.as_deref().map(OutputFile::open).transpose()?;
 
     let bake_start = Instant::now();
@@ -150,18 +128,11 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let outcome = render_passes(renderer.as_mut(), crop, samples, args.time, &mut film, &interrupt, show_progress)?;
     report(&film);
 
-    let hash = film.hash();
-    let picture = Picture { format, sixteen_bit: args.bits == "16", aovs: &args.aov };
-    picture.write(&film, &mut output)?;
-    let to_stdout = output.is_stdout();
-    output.commit()?;
+    args.picture.write(&mut film, format, &args.aov, output)?;
     if let Some(mut file) = stats_file {
         let stats = stats_json(args, &data, &film, renderer.as_ref(), &outcome, bake_time);
         writeln!(file, "{stats:#}")?;
         file.commit()?;
-    }
-    if !to_stdout {
-        writeln!(std::io::stdout(), "film {hash}")?;
     }
     log::info!("{} in {:.2} s", path.display(), outcome.render_time.as_secs_f64());
     Ok(outcome.interrupted.map_or(ExitCode::SUCCESS, ExitCode::from))

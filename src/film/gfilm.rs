@@ -347,20 +347,21 @@ impl Film {
     /// Whether every sum is one that this many samples can have: what keeps later merges from overflowing.
     fn check_bounds(&self) -> Result<(), String> {
         let bound = self.samples.total() << SUM_BITS;
-        let within = |sums: &[i64]| sums.iter().all(|sum| sum.unsigned_abs() <= bound);
+        let within = |sums: &[i64], bound: u64| sums.iter().all(|sum| sum.unsigned_abs() <= bound);
         let width = self.spec.crop.width as usize;
         let place = |i: usize| (i % width, i / width);
-        if let Some(i) = self.sums.iter().position(|sums| !within(sums)) {
+        if let Some(i) = self.sums.iter().position(|sums| !within(sums, bound)) {
             return Err(format!(
                 "sums of pixel {:?} of the crop exceed what {} samples can add up to",
                 place(i),
                 self.samples.total()
             ));
         }
+        // A contribution is clamped at twice what a sample may hold, and auxiliary values are not clamped again.
         let aovs = self.aovs.iter().flatten();
         if let Some(i) = aovs
             .into_iter()
-            .position(|aov| !within(&aov.normal) || !within(&aov.albedo))
+            .position(|aov| !within(&aov.normal, 2 * bound) || !within(&aov.albedo, 2 * bound))
         {
             return Err(format!(
                 "auxiliary sums of pixel {:?} of the crop are out of range",

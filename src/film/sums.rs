@@ -1,6 +1,7 @@
 //! The film itself: signed fixed-point sums per pixel. Integer sums do not care about order, threads, devices or
 //! restarts, which is what makes a picture the same bits however it was computed.
 
+use super::display::Display;
 use super::{MAX_SAMPLES, MergeError, Rect, SampleRanges};
 use crate::layout::{AovPixel, FilmSum, INVALID, T_INFINITE};
 use crate::scene::ToneMap;
@@ -40,6 +41,17 @@ pub struct FilmSpec {
     pub tonemap: ToneMap,
     /// In stops; not compared.
     pub exposure: f32,
+}
+
+impl FilmSpec {
+    /// How the picture is displayed.
+    pub fn display(&self) -> Display {
+        Display {
+            tonemap: self.tonemap,
+            exposure: self.exposure,
+            transparent: self.transparent,
+        }
+    }
 }
 
 /// Auxiliary values of one pixel, as `layout::AovPixel` with its unused lanes left out. Sums have scale 2^22.
@@ -132,6 +144,12 @@ impl Film {
         &self.spec
     }
 
+    /// How it is to be displayed from now on. `exposure` in stops, finite.
+    pub fn set_display(&mut self, tonemap: ToneMap, exposure: f32) {
+        debug_assert!(exposure.is_finite(), "{exposure}");
+        (self.spec.tonemap, self.spec.exposure) = (tonemap, exposure);
+    }
+
     /// The part of the frame it holds.
     pub fn crop(&self) -> Rect {
         self.spec.crop
@@ -175,8 +193,8 @@ impl Film {
     }
 
     /// Adds auxiliary values to the pixels of `rect`, like `add_sums`; nothing if the film keeps none. Depth, object
-    /// and material are taken only if `samples`, those the values are of, holds sample 0.
-    pub fn add_aovs(&mut self, rect: Rect, pixels: &[AovPixel], samples: &Range<u32>) {
+    /// and material are taken only if the values are of samples that include sample 0.
+    pub fn add_aovs(&mut self, rect: Rect, pixels: &[AovPixel], has_first_sample: bool) {
         debug_assert_eq!(rect.area(), pixels.len(), "{rect}");
         let rows = self.rows(rect);
         let Some(aovs) = &mut self.aovs else { return };
@@ -184,10 +202,10 @@ impl Film {
             for (to, from) in aovs[row].iter_mut().zip(pixels) {
                 let (normal, albedo) = (sum_lanes(&from.normal), sum_lanes(&from.albedo));
                 for i in 0..3 {
-                    add_to(&mut to.normal[i], normal[i]);
-                    add_to(&mut to.albedo[i], albedo[i]);
+                    to.normal[i] = to.normal[i].saturating_add(normal[i]);
+                    to.albedo[i] = to.albedo[i].saturating_add(albedo[i]);
                 }
-                if samples.contains(&0) {
+                if has_first_sample {
                     (to.depth, to.object, to.material) = (from.depth, from.object, from.material);
                 }
             }
@@ -233,8 +251,8 @@ impl Film {
         if let (Some(to), Some(from)) = (&mut self.aovs, &other.aovs) {
             for (to, from) in to.iter_mut().zip(from) {
                 for i in 0..3 {
-                    add_to(&mut to.normal[i], from.normal[i]);
-                    add_to(&mut to.albedo[i], from.albedo[i]);
+                    to.normal[i] = to.normal[i].saturating_add(from.normal[i]);
+                    to.albedo[i] = to.albedo[i].saturating_add(from.albedo[i]);
                 }
                 if other.samples.contains(0) {
                     (to.depth, to.object, to.material) = (from.depth, from.object, from.material);
@@ -272,6 +290,19 @@ impl Film {
             |(w, h)| format!("{w}x{h}"),
         )?;
         same("crop", (&a.crop, &b.crop), Rect::to_string)?;
+        same("seed", (&a.seed, &b.seed), u32::to_string)?;
+        same("integrator", (&a.integrator, &b.integrator), String::clone)?;
+        same("unit", (&a.unit_exponent, &b.unit_exponent), |e| {
+            format!("2^{e}")
+        })?;
+        same(
+            "transparency",
+            (&a.transparent, &b.transparent),
+            bool::to_string,
+        )?;
+        let kept = |kept: &bool| if *kept { "kept" } else { "not kept" }.to_string();
+        same("auxiliary values", (&a.aovs, &b.aovs), kept)?;
+        // Last, since the digest covers much of the above, and those words say more.
         let scene = |film: &FilmSpec| {
             format!(
                 "{} ({})",
@@ -286,18 +317,7 @@ impl Film {
                 right: scene(b),
             });
         }
-        same("seed", (&a.seed, &b.seed), u32::to_string)?;
-        same("integrator", (&a.integrator, &b.integrator), String::clone)?;
-        same("unit", (&a.unit_exponent, &b.unit_exponent), |e| {
-            format!("2^{e}")
-        })?;
-        same(
-            "transparency",
-            (&a.transparent, &b.transparent),
-            bool::to_string,
-        )?;
-        let kept = |kept: &bool| if *kept { "kept" } else { "not kept" }.to_string();
-        same("auxiliary values", (&a.aovs, &b.aovs), kept)
+        Ok(())
     }
 
     /// The film hash: two films agree in it if and only if (but for chance) they hold the same sums of the same

@@ -2,18 +2,18 @@
 //
 // tests/layout.rs reflects the SPIR-V of this kernel (names, types, offsets, strides, constants), which needs no device.
 //
-// On a device, one dispatch checks one record. Set 0:
-// * binding 0: a SceneHeader (16 words of 16 bytes), then the records to read, back to back, from byte 256 on.
-//   `header.first_*` of the record must be FIRST_WORD; give the others 0xffffff so that a mix-up reads zeros.
+// On a device, one dispatch checks one record. Set 0 (several blocks share each binding: one per record):
+// * binding 0: a SceneHeader (256 bytes), then the records to read, back to back.
+//   `header.first_*` of the record must be FIRST_WORD; give the others 0xffffff so that a mix-up is seen.
 // * binding 1: the same records as they were read, from byte 0 on; or the constants, one u32 each.
 // * push constants: `record` (its number in `main`, or RECORD_COUNT for the constants), `count` (records to read).
-// Workgroups of one invocation, one a record. Bytes written to binding 1 must equal those given from byte 256 on: words
-// 0, 1, 2, ... show a member in the wrong place.
+// One invocation a record. What binding 1 holds must be what was given from byte 256 on: words 0, 1, 2, ... show
+// where a misplaced member came from.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-layout(local_size_x = 1, local_size_y = 1, local_size_z = 1) in;
+layout(local_size_x_id = 0, local_size_y = 1, local_size_z = 1) in;
 layout(push_constant, scalar) uniform Choice { uint record; uint count; };
 
 const uint RECORD_COUNT = 19u;
@@ -33,7 +33,11 @@ uvec4 fetch_shadow(uint at) { return heap[FIRST_WORD + at]; }
 #include "layout/mod.glsl"
 
 // Records without a `load_*` are read as kernels read them: through a block.
-#define IN(Record, name) layout(set = 0, binding = 0, scalar) readonly buffer Record##In { uvec4 name##_skip[FIRST_WORD]; Record name##_in[]; }
+#define IN(Record, name)                                                       \
+    layout(set = 0, binding = 0, scalar) readonly buffer Record##In {          \
+        uvec4 name##_skip[FIRST_WORD];                                         \
+        Record name##_in[];                                                    \
+    }
 IN(Camera, camera);
 IN(SceneHeader, scene_header);
 IN(Batch, batch);
@@ -43,7 +47,8 @@ IN(Ray, ray);
 IN(DispatchArguments, dispatch_arguments);
 IN(Control, control);
 
-#define OUT(Record, name) layout(set = 0, binding = 1, scalar) writeonly buffer Record##Out { Record name##_out[]; }
+#define OUT(Record, name)                                                      \
+    layout(set = 0, binding = 1, scalar) writeonly buffer Record##Out { Record name##_out[]; }
 OUT(Node, node);
 OUT(Triangle, triangle);
 OUT(Instance, instance);
@@ -65,7 +70,7 @@ OUT(DispatchArguments, dispatch_arguments);
 OUT(Control, control);
 layout(set = 0, binding = 1, scalar) writeonly buffer ConstantsOut { uint constants[]; };
 
-// Every constant of layout/*.glsl, in the order of tests/layout.rs; floats by their bits.
+// Every constant of layout/*.glsl; floats by their bits. A new one is appended here (tests/layout.rs asks for it).
 void store_constants() {
     constants[0] = INVALID;
     constants[1] = CAMERA_PERSPECTIVE;

@@ -1,6 +1,6 @@
 //! OpenEXR: linear f32, and the auxiliary channels as layers by name in one part.
 
-use super::{Aov, Film, Settings, facts};
+use super::{Aov, Film, facts};
 use crate::film::Aovs;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image,
@@ -8,15 +8,15 @@ use exr::prelude::{
 };
 use std::io::{self, Cursor, Write};
 
-/// R, G, B, A (coverage where transparent, else 1), premultiplied, and the channels of `settings.aovs` that the film
+/// R, G, B, A (coverage where transparent, else 1), premultiplied, and the channels of `wanted` that the film
 /// has: depth.Z, normal.X Y Z, albedo.R G B (f32), object.id, material.id, samples (u32). The data window is the crop
 /// in the full frame. Lossless ZIP, lines from the top.
-pub fn write(film: &Film, settings: &Settings, out: &mut dyn Write) -> io::Result<()> {
+pub fn write(film: &Film, wanted: &[Aov], out: &mut dyn Write) -> io::Result<()> {
     let spec = film.spec();
     let image = film.resolve();
     let plane =
         |lane: usize| FlatSamples::F32(image.pixels.iter().map(|pixel| pixel[lane]).collect());
-    let alpha = match settings.display.transparent {
+    let alpha = match spec.transparent {
         true => plane(3),
         false => FlatSamples::F32(vec![1.0; image.pixels.len()]),
     };
@@ -27,7 +27,7 @@ pub fn write(film: &Film, settings: &Settings, out: &mut dyn Write) -> io::Resul
         AnyChannel::new("A", alpha),
     ];
     let aovs = film.resolve_aovs();
-    for &aov in &settings.aovs {
+    for &aov in wanted {
         add_aov(&mut channels, film, aovs.as_ref(), aov);
     }
 

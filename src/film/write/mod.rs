@@ -6,10 +6,10 @@ mod png;
 
 pub use png::write_rgb8;
 
-use super::display::Display;
-use super::{Film, FilmError, gfilm};
+use super::{Film, FilmError, OutputFile, gfilm};
 use std::io::{self, Write};
 use std::path::Path;
+use std::str::FromStr;
 
 /// File formats that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +37,7 @@ impl Format {
     }
 
     /// By the path's extension; PNG for standard output, `-`.
-    pub fn from_path(path: &Path) -> Result<Self, FilmError> {
+    pub fn of(path: &Path) -> Result<Self, FilmError> {
         if path == Path::new("-") {
             return Ok(Self::Png);
         }
@@ -53,14 +53,11 @@ impl Format {
             ))
         })
     }
-}
 
-/// Bits of a PNG's channel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Depth {
-    #[default]
-    Eight,
-    Sixteen,
+    /// Whether files of this format can hold auxiliary values.
+    pub fn has_layers(self) -> bool {
+        matches!(self, Self::Exr | Self::Gfilm)
+    }
 }
 
 /// Auxiliary channels an EXR can carry.
@@ -83,9 +80,13 @@ impl Aov {
         ("material", Self::Material),
         ("samples", Self::Samples),
     ];
+}
+
+impl FromStr for Aov {
+    type Err = String;
 
     /// An error names what is allowed.
-    pub fn from_name(name: &str) -> Result<Self, String> {
+    fn from_str(name: &str) -> Result<Self, String> {
         let named = Self::ALL.iter().find(|(n, _)| *n == name);
         named
             .map(|(_, aov)| *aov)
@@ -93,60 +94,32 @@ impl Aov {
     }
 }
 
-/// What to write.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+/// How a film becomes a file. How it is displayed is the film's own (`Film::set_display`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Picture<'a> {
     pub format: Format,
-    /// PNG only.
-    pub depth: Depth,
-    /// Curve and exposure: PNG only; `transparent`: PNG and EXR.
-    pub display: Display,
-    /// EXR only; those the film does not keep are left out.
-    pub aovs: Vec<Aov>,
+    /// PNG only: 16 bits a channel instead of 8.
+    pub sixteen_bit: bool,
+    /// EXR only; those the film does not keep are left out. A gfilm keeps what the film has.
+    pub aovs: &'a [Aov],
 }
 
-impl Settings {
-    /// What the film itself asks for, with every auxiliary channel it has.
-    pub fn of(film: &Film, format: Format) -> Self {
-        let spec = film.spec();
-        let display = Display {
-            tonemap: spec.tonemap,
-            exposure: spec.exposure,
-            transparent: spec.transparent,
-        };
-        let aovs = if spec.aovs {
-            Aov::ALL.map(|(_, aov)| aov).into()
-        } else {
-            Vec::new()
-        };
-        Self {
-            format,
-            depth: Depth::Eight,
-            display,
-            aovs,
+impl Picture<'_> {
+    /// Writes the film into an opened file, which is still to be committed.
+    pub fn write(&self, film: &Film, file: &mut OutputFile) -> Result<(), FilmError> {
+        let written = self.write_to(film, file).and_then(|()| file.flush());
+        written.map_err(|e| FilmError::write(file.path(), e))
+    }
+
+    /// Writes the film; the same film and settings give the same bytes.
+    pub fn write_to(&self, film: &Film, out: &mut dyn Write) -> io::Result<()> {
+        match self.format {
+            Format::Png => png::write(film, self.sixteen_bit, out),
+            Format::Exr => exr::write(film, self.aovs, out),
+            Format::Hdr => hdr::write(film, out),
+            Format::Gfilm => gfilm::write(film, out),
         }
     }
-}
-
-/// Writes the film in the format of `settings`; the same film and settings give the same bytes.
-pub fn write(film: &Film, settings: &Settings, out: &mut dyn Write) -> io::Result<()> {
-    match settings.format {
-        Format::Png => png::write(film, settings, out),
-        Format::Exr => exr::write(film, settings, out),
-        Format::Hdr => hdr::write(film, out),
-        Format::Gfilm => gfilm::write(film, out),
-    }
-}
-
-/// Writes into an opened file and gives it its name.
-pub fn write_file(
-    film: &Film,
-    settings: &Settings,
-    mut file: super::OutputFile,
-) -> Result<(), FilmError> {
-    let written = write(film, settings, &mut file);
-    written.map_err(|e| FilmError::write(file.path(), e))?;
-    file.commit()
 }
 
 /// What every picture file says about where it came from, in this order.

@@ -1,29 +1,31 @@
 //! PNG: what a display shows.
 
-use super::{Depth, Film, Settings, facts};
+use super::{Film, facts};
 use crate::film::display::encode;
 use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
 use std::io::{self, Write};
 
 /// The displayed film, 8 or 16 bits, tagged sRGB, with the facts as text.
-pub fn write(film: &Film, settings: &Settings, out: &mut dyn Write) -> io::Result<()> {
+pub fn write(film: &Film, sixteen_bit: bool, out: &mut dyn Write) -> io::Result<()> {
     let image = film.resolve();
-    let (bits, max) = match settings.depth {
-        Depth::Eight => (BitDepth::Eight, 255),
-        Depth::Sixteen => (BitDepth::Sixteen, 65_535),
+    let (bits, max) = if sixteen_bit {
+        (BitDepth::Sixteen, 65_535)
+    } else {
+        (BitDepth::Eight, 255)
     };
-    let (color, channels) = if settings.display.transparent {
+    let display = film.spec().display();
+    let (color, channels) = if display.transparent {
         (ColorType::Rgba, 4)
     } else {
         (ColorType::Rgb, 3)
     };
-    let integers = encode(&image, &settings.display, max);
+    let integers = encode(&image, &display, max);
     let values = integers
         .iter()
         .flat_map(|pixel| pixel[..channels].iter().copied());
-    let bytes: Vec<u8> = match settings.depth {
-        Depth::Eight => values.map(|v| v as u8).collect(),
-        Depth::Sixteen => values.flat_map(u16::to_be_bytes).collect(),
+    let bytes: Vec<u8> = match sixteen_bit {
+        false => values.map(|v| v as u8).collect(),
+        true => values.flat_map(u16::to_be_bytes).collect(),
     };
 
     let mut encoder = Encoder::new(out, image.width, image.height);
