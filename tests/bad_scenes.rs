@@ -29,7 +29,7 @@ const HEAD: &str = "[camera]\neye = [0, 0, 5]\n[[object]]\nshape = \"sphere\"\n"
 fn toml_that_is_no_toml_is_refused_at_its_place() {
     refuses("a.toml", "[camera\n", "a.toml:1:8: unclosed table, expected `]`");
     refuses("a.toml", "a = 1\na = 2\n", "a.toml:2:1: duplicate key");
-    refuses("a.toml", "é = [1,\n", "a.toml:2:1: unclosed array, expected `]`");
+    refuses("a.toml", "é = [1,\n", "a.toml:1:8: unclosed array, expected `]`");
     assert!(attempt("a.toml", b"x = \"\xff\"").unwrap_err().starts_with("a.toml:1:6: the text is not UTF-8"));
     assert!(attempt("a.toml", &b"a=[".repeat(100_000)).unwrap_err().starts_with("a.toml:1:"));
     assert!(attempt("a.toml", b"a = 99999999999999999999").unwrap_err().contains("a.toml:1:5: the integer"));
@@ -66,7 +66,7 @@ fn wrong_types_and_ranges_say_what_was_found_and_what_is_allowed() {
         ("segments = 99999999", "a.toml:5:12: \"segments\" must be an integer from 1 to 4096, found 99999999"),
         ("segments = 8.0", "a.toml:5:12: \"segments\" must be an integer from 1 to 4096, found 8.0"),
         ("casts_shadow = 1", "a.toml:5:16: \"casts_shadow\" must be true or false, found 1"),
-        ("material = 3", "a.toml:5:12: \"material\" must be a string, found 3"),
+        ("material = 3", "a.toml:5:12: \"material\" must be a non-empty string, found 3"),
         ("translate = [1, 2]", "a.toml:5:13: \"translate\" must be three numbers [x, y, z], found an array of 2"),
         ("translate = [1, 2, nan]", "a.toml:5:13: \"translate\" must be three numbers [x, y, z], found an array of 3"),
         ("scale = 0", "a.toml:5:9: \"scale\" must not be 0: nothing would be left to see"),
@@ -165,10 +165,10 @@ fn materials_that_mean_nothing_are_refused() {
 fn names_are_unique_and_known() {
     let cases: &[(&str, &str)] = &[
         ("[[material]]\ncolor = 1", "a.toml:5:1: [[material]] needs the key \"name\""),
-        ("[[material]]\nname = \"\"", "a.toml:6:8: \"name\" must be a string, found the string \"\""),
-        ("[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"", "a.toml:8:8: there is already a material named \"a\" in line 6"),
+        ("[[material]]\nname = \"\"", "a.toml:6:8: \"name\" must be a non-empty string, found the string \"\""),
+        ("[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"", "a.toml:8:8: the material name \"a\" is already given in line 6"),
         ("material = \"coper\"\n[[material]]\nname = \"copper\"", "a.toml:5:12: there is no material named \"coper\"; did you mean \"copper\"?"),
-        ("name = \"x\"\n[[object]]\nshape = \"box\"\nname = \"x\"", "a.toml:8:8: there is already a object named \"x\" in line 5"),
+        ("name = \"x\"\n[[object]]\nshape = \"box\"\nname = \"x\"", "a.toml:8:8: the object name \"x\" is already given in line 5"),
         ("[[object]]\nname = \"x\"", "a.toml:5:1: [[object]] needs the key \"shape\""),
     ];
     for (text, expected) in cases {
@@ -246,7 +246,7 @@ fn malformed_obj_files_are_refused_at_their_place() {
         ("v 0 zero 0\n", "a.obj:1:5: expected a number, found \"zero\""),
         ("v 0 nan 0\n", "a.obj:1:5: \"nan\" is not a finite number up to 1e12"),
         ("v 0 1e40 0\n", "a.obj:1:5: \"1e40\" is not a finite number up to 1e12"),
-        ("vt\n", "a.obj:1:1: \"vt\" needs 1 numbers, found 0"),
+        ("vt\n", "a.obj:1:1: \"vt\" needs 1 number, found 0"),
         ("vn 0 1\n", "a.obj:1:1: \"vn\" needs 3 numbers, found 2"),
         ("f\n", "a.obj:1:1: a face needs 3 corners, found 0"),
         ("v 0 0 0\nv 1 0 0\nf 1 2\n", "a.obj:3:1: a face needs 3 corners, found 2"),
@@ -276,7 +276,7 @@ fn malformed_mtl_files_are_refused_at_their_place() {
         ("newmtl\n", "a.mtl:1:1: \"newmtl\" needs a name"),
         ("Kd 1 1 1\n", "a.mtl:1:1: \"Kd\" comes before any \"newmtl\""),
         ("newmtl a\nKd 1 red 1\n", "a.mtl:2:6: expected a number, found \"red\""),
-        ("newmtl a\nKd\n", "a.mtl:2:1: \"Kd\" needs 1 numbers, found 0"),
+        ("newmtl a\nKd\n", "a.mtl:2:1: \"Kd\" needs 3 numbers, found 0"),
         ("newmtl a\nNs inf\n", "a.mtl:2:4: \"inf\" is not a finite number up to 1e12"),
         ("newmtl a\nd\n", "a.mtl:2:1: \"d\" needs a number"),
         ("newmtl a\nillum -1\n", "a.mtl:2:7: \"illum\" must be 0 to 10, found \"-1\""),
