@@ -36,10 +36,7 @@ fn embed_kernels() -> Result<(), BTreeSet<String>> {
     let mut errors = BTreeSet::new();
     let mut table = String::from("static KERNELS: &[Kernel] = &[\n");
     for (name, file) in &sources {
-        match (
-            build(file, &shaders, &[]),
-            build(file, &shaders, &["FETCH_TEXEL"]),
-        ) {
+        match (build(file, &shaders, &[]), build(file, &shaders, &["FETCH_TEXEL"])) {
             (Ok(storage), Ok(texel)) => {
                 let stem = name.replace('/', "_");
                 let storage_file = out.join(format!("{stem}.storage.spv"));
@@ -56,12 +53,7 @@ fn embed_kernels() -> Result<(), BTreeSet<String>> {
                 .expect("a String takes everything");
             }
             (storage, texel) => {
-                errors.extend(
-                    [storage, texel]
-                        .into_iter()
-                        .filter_map(Result::err)
-                        .flatten(),
-                );
+                errors.extend([storage, texel].into_iter().filter_map(Result::err).flatten());
             }
         }
     }
@@ -81,10 +73,9 @@ fn find_kernels(shaders: &Path) -> io::Result<Vec<(String, PathBuf)>> {
         };
         for entry in entries {
             let path = entry?.path();
-            if let (Some("comp"), Some(stem)) = (
-                path.extension().and_then(|e| e.to_str()),
-                path.file_stem().and_then(|s| s.to_str()),
-            ) {
+            if let (Some("comp"), Some(stem)) =
+                (path.extension().and_then(|e| e.to_str()), path.file_stem().and_then(|s| s.to_str()))
+            {
                 found.push((format!("{prefix}{stem}"), path));
             }
         }

@@ -5,8 +5,7 @@
 use std::path::Path;
 
 use shaderc::{
-    CompileOptions, Compiler, EnvVersion, OptimizationLevel, ResolvedInclude, ShaderKind,
-    SpirvVersion, TargetEnv,
+    CompileOptions, Compiler, EnvVersion, OptimizationLevel, ResolvedInclude, ShaderKind, SpirvVersion, TargetEnv,
 };
 
 /// Compiles a compute shader for Vulkan 1.2 (SPIR-V 1.5), unoptimised, with source lines.
@@ -17,12 +16,7 @@ use shaderc::{
 ///
 /// SPIR-V optimisers are kept out because they merge float constants and reassociate before the decorations are read.
 /// The error is shaderc's text, one `file:line: error: message` a line.
-pub fn glsl_to_spirv(
-    text: &str,
-    name: &str,
-    shaders: &Path,
-    defines: &[&str],
-) -> Result<Vec<u32>, String> {
+pub fn glsl_to_spirv(text: &str, name: &str, shaders: &Path, defines: &[&str]) -> Result<Vec<u32>, String> {
     let compiler = Compiler::new().map_err(|e| format!("{name}: no shader compiler: {e}"))?;
     let mut options = CompileOptions::new().map_err(|e| format!("{name}: {e}"))?;
     options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_2 as u32);
@@ -35,14 +29,10 @@ pub fn glsl_to_spirv(
     options.set_include_callback(|wanted, _kind, from, _depth| {
         let content = std::fs::read_to_string(shaders.join(wanted))
             .map_err(|e| format!("no file shaders/{wanted}, wanted by {from}: {e}"))?;
-        Ok(ResolvedInclude {
-            resolved_name: format!("shaders/{wanted}"),
-            content,
-        })
+        Ok(ResolvedInclude { resolved_name: format!("shaders/{wanted}"), content })
     });
-    let artifact = compiler
-        .compile_into_spirv(text, ShaderKind::Compute, name, "main", Some(&options))
-        .map_err(|e| match e {
+    let artifact =
+        compiler.compile_into_spirv(text, ShaderKind::Compute, name, "main", Some(&options)).map_err(|e| match e {
             shaderc::Error::CompilationError(_, messages) => messages.trim_end().to_owned(),
             other => format!("{name}: {other}"),
         })?;

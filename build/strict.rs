@@ -34,17 +34,8 @@ pub struct Violation {
 
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Violation {
-            file,
-            line,
-            function,
-            operation,
-            advice,
-        } = self;
-        write!(
-            f,
-            "{file}:{line}: {operation} in `{function}` is not strict: {advice}"
-        )
+        let Violation { file, line, function, operation, advice } = self;
+        write!(f, "{file}:{line}: {operation} in `{function}` is not strict: {advice}")
     }
 }
 
@@ -59,13 +50,7 @@ pub fn assemble(module: &Module) -> Vec<u32> {
 }
 
 /// Float operations that round at most once and whose result is decorated by [`decorate`].
-pub const ARITHMETIC: [Op; 5] = [
-    Op::FAdd,
-    Op::FSub,
-    Op::FMul,
-    Op::FNegate,
-    Op::VectorTimesScalar,
-];
+pub const ARITHMETIC: [Op; 5] = [Op::FAdd, Op::FSub, Op::FMul, Op::FNegate, Op::VectorTimesScalar];
 
 /// Other operations that may read or make floats: exact, or correctly rounded by the Vulkan specification.
 const EXACT: [Op; 33] = [
@@ -138,10 +123,7 @@ pub fn decorate(module: &mut Module) -> usize {
             .filter_map(|i| i.result_id)
             .filter(|id| !done.contains(id));
         added.extend(results.map(|id| {
-            let operands = vec![
-                Operand::IdRef(id),
-                Operand::Decoration(Decoration::NoContraction),
-            ];
+            let operands = vec![Operand::IdRef(id), Operand::Decoration(Decoration::NoContraction)];
             Instruction::new(Op::Decorate, None, None, operands)
         }));
     }
@@ -153,10 +135,7 @@ pub fn decorate(module: &mut Module) -> usize {
 /// Results decorated `NoContraction`.
 pub fn no_contraction(module: &Module) -> HashSet<Word> {
     let target = |i: &Instruction| match i.operands.as_slice() {
-        [
-            Operand::IdRef(id),
-            Operand::Decoration(Decoration::NoContraction),
-        ] => Some(*id),
+        [Operand::IdRef(id), Operand::Decoration(Decoration::NoContraction)] => Some(*id),
         _ => None,
     };
     module.annotations.iter().filter_map(target).collect()
@@ -185,13 +164,7 @@ pub fn check(module: &Module) -> Vec<Violation> {
                 }
                 if let Some((operation, advice)) = types.refuse(instruction) {
                     let (file, function) = (file.clone(), name.clone());
-                    found.push(Violation {
-                        file,
-                        line,
-                        function,
-                        operation,
-                        advice,
-                    });
+                    found.push(Violation { file, line, function, operation, advice });
                 }
             }
         }
@@ -206,21 +179,12 @@ fn check_module(module: &Module, types: &Types) -> Vec<Violation> {
     let mut found = Vec::new();
     let mut refuse = |operation: String, advice| {
         let (file, function) = (String::new(), String::from("(module)"));
-        found.push(Violation {
-            file,
-            line: 0,
-            function,
-            operation,
-            advice,
-        });
+        found.push(Violation { file, line: 0, function, operation, advice });
     };
     for instruction in &module.types_global_values {
         match (instruction.class.opcode, instruction.operands.as_slice()) {
             (Op::TypeFloat, [Operand::LiteralBit32(width), ..]) if *width != 32 => {
-                refuse(
-                    format!("TypeFloat {width}"),
-                    "only 32-bit floats exist on every device",
-                );
+                refuse(format!("TypeFloat {width}"), "only 32-bit floats exist on every device");
             }
             (Op::SpecConstantOp, [Operand::LiteralSpecConstantOpInteger(op), ..])
                 if types.touches_float(instruction) && !EXACT.contains(op) =>
@@ -233,14 +197,10 @@ fn check_module(module: &Module, types: &Types) -> Vec<Violation> {
     }
     for annotation in &module.annotations {
         for operand in &annotation.operands {
-            if let Operand::Decoration(
-                decoration @ (Decoration::RelaxedPrecision | Decoration::FPFastMathMode),
-            ) = operand
+            if let Operand::Decoration(decoration @ (Decoration::RelaxedPrecision | Decoration::FPFastMathMode)) =
+                operand
             {
-                refuse(
-                    format!("{decoration:?}"),
-                    "remove mediump, lowp and fast-math qualifiers",
-                );
+                refuse(format!("{decoration:?}"), "remove mediump, lowp and fast-math qualifiers");
             }
         }
     }
@@ -257,9 +217,7 @@ pub fn strip_lines(module: &mut Module) {
         }
     }
     module.debug_module_processed.clear();
-    module
-        .debug_string_source
-        .retain(|i| i.class.opcode == Op::String);
+    module.debug_string_source.retain(|i| i.class.opcode == Op::String);
     let used: HashSet<Word> = module
         .all_inst_iter()
         .flat_map(|i| &i.operands)
@@ -268,9 +226,7 @@ pub fn strip_lines(module: &mut Module) {
             _ => None,
         })
         .collect();
-    module
-        .debug_string_source
-        .retain(|i| i.result_id.is_some_and(|id| used.contains(&id)));
+    module.debug_string_source.retain(|i| i.result_id.is_some_and(|id| used.contains(&id)));
 }
 
 /// Names and strings by id.
@@ -282,9 +238,7 @@ impl Names {
         for instruction in module.debug_names.iter().chain(&module.debug_string_source) {
             let (id, text) = match (instruction.class.opcode, instruction.operands.as_slice()) {
                 (Op::Name, [Operand::IdRef(id), Operand::LiteralString(text)]) => (*id, text),
-                (Op::String, [Operand::LiteralString(text)]) => {
-                    (instruction.result_id.unwrap_or(0), text)
-                }
+                (Op::String, [Operand::LiteralString(text)]) => (instruction.result_id.unwrap_or(0), text),
                 _ => continue,
             };
             names.insert(id, text.clone());
@@ -337,21 +291,13 @@ impl Types {
                 _ => {}
             }
         }
-        let value_types = module
-            .all_inst_iter()
-            .filter_map(|i| Some((i.result_id?, i.result_type?)))
-            .collect();
+        let value_types = module.all_inst_iter().filter_map(|i| Some((i.result_id?, i.result_type?))).collect();
         let glsl = module
             .ext_inst_imports
             .iter()
             .find(|i| i.operands.first() == Some(&Operand::from("GLSL.std.450")))
             .and_then(|i| i.result_id);
-        Types {
-            floats,
-            matrices,
-            value_types,
-            glsl,
-        }
+        Types { floats, matrices, value_types, glsl }
     }
 
     /// Types of the result and of every operand.
@@ -373,18 +319,12 @@ impl Types {
         if op == Op::ExtInst {
             return self.refuse_extended(instruction);
         }
-        if self
-            .types_in(instruction)
-            .any(|t| self.matrices.contains(&t))
-        {
+        if self.types_in(instruction).any(|t| self.matrices.contains(&t)) {
             return Some((format!("{op:?} on a matrix"), "write the rows as vectors"));
         }
         // GLSL leaves `%` undefined where an operand is negative.
         if matches!(op, Op::SMod | Op::SRem) {
-            return Some((
-                format!("{op:?}"),
-                "undefined below zero; use unsigned operands",
-            ));
+            return Some((format!("{op:?}"), "undefined below zero; use unsigned operands"));
         }
         if !self.touches_float(instruction) || ARITHMETIC.contains(&op) || EXACT.contains(&op) {
             return None;
@@ -402,19 +342,12 @@ impl Types {
     }
 
     fn refuse_extended(&self, instruction: &Instruction) -> Option<(String, &'static str)> {
-        let [
-            Operand::IdRef(set),
-            Operand::LiteralExtInstInteger(number),
-            ..,
-        ] = instruction.operands.as_slice()
-        else {
+        let [Operand::IdRef(set), Operand::LiteralExtInstInteger(number), ..] = instruction.operands.as_slice() else {
             return Some(("ExtInst".to_owned(), "malformed"));
         };
         if Some(*set) != self.glsl {
             let advice = "only GLSL.std.450 is known";
-            return self
-                .touches_float(instruction)
-                .then(|| (format!("ExtInst {number}"), advice));
+            return self.touches_float(instruction).then(|| (format!("ExtInst {number}"), advice));
         }
         let op = GLOp::from_u32(*number);
         if op.is_some_and(|op| EXACT_EXTENDED.contains(&op)) {

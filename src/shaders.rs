@@ -68,21 +68,13 @@ const HEADER_WORDS: usize = 5;
 /// `words` is a valid module with one entry point, as [`kernel`] returns; without any control it comes back unchanged.
 pub fn with_float_controls(words: &[u32], controls: FloatControls) -> Vec<u32> {
     let wanted = [
-        (
-            controls.denorm_preserve,
-            Capability::DenormPreserve,
-            ExecutionMode::DenormPreserve,
-        ),
+        (controls.denorm_preserve, Capability::DenormPreserve, ExecutionMode::DenormPreserve),
         (
             controls.signed_zero_inf_nan_preserve,
             Capability::SignedZeroInfNanPreserve,
             ExecutionMode::SignedZeroInfNanPreserve,
         ),
-        (
-            controls.rounding_rte,
-            Capability::RoundingModeRTE,
-            ExecutionMode::RoundingModeRTE,
-        ),
+        (controls.rounding_rte, Capability::RoundingModeRTE, ExecutionMode::RoundingModeRTE),
     ];
     let (entry, after_entry) = entry_point(words);
     let (mut capabilities, mut modes) = (Vec::new(), Vec::new());
@@ -129,18 +121,9 @@ mod tests {
 
     /// Capabilities and (entry point, mode, width) the second module has and the first has not.
     fn added(before: &Module, after: &Module) -> (Vec<Operand>, Vec<Vec<Operand>>) {
-        let capabilities = after
-            .capabilities
-            .iter()
-            .filter(|i| !before.capabilities.contains(i));
-        let modes = after
-            .execution_modes
-            .iter()
-            .filter(|i| !before.execution_modes.contains(i));
-        (
-            capabilities.map(|i| i.operands[0].clone()).collect(),
-            modes.map(|i| i.operands.clone()).collect(),
-        )
+        let capabilities = after.capabilities.iter().filter(|i| !before.capabilities.contains(i));
+        let modes = after.execution_modes.iter().filter(|i| !before.execution_modes.contains(i));
+        (capabilities.map(|i| i.operands[0].clone()).collect(), modes.map(|i| i.operands.clone()).collect())
     }
 
     #[test]
@@ -162,30 +145,14 @@ mod tests {
                 }
             };
             use {Capability as C, ExecutionMode as M};
-            expect(
-                controls.denorm_preserve,
-                C::DenormPreserve,
-                M::DenormPreserve,
-            );
+            expect(controls.denorm_preserve, C::DenormPreserve, M::DenormPreserve);
             let preserve = controls.signed_zero_inf_nan_preserve;
-            expect(
-                preserve,
-                C::SignedZeroInfNanPreserve,
-                M::SignedZeroInfNanPreserve,
-            );
-            expect(
-                controls.rounding_rte,
-                C::RoundingModeRTE,
-                M::RoundingModeRTE,
-            );
+            expect(preserve, C::SignedZeroInfNanPreserve, M::SignedZeroInfNanPreserve);
+            expect(controls.rounding_rte, C::RoundingModeRTE, M::RoundingModeRTE);
 
             let words = with_float_controls(module(), controls);
             let after = load_words(&words).expect("still valid");
-            assert_eq!(
-                added(&before, &after),
-                (capabilities, modes),
-                "{controls:?}"
-            );
+            assert_eq!(added(&before, &after), (capabilities, modes), "{controls:?}");
             assert_eq!(words.len(), module().len() + bits_set(bits) * (2 + 4));
         }
     }
@@ -196,9 +163,6 @@ mod tests {
 
     #[test]
     fn no_float_control_leaves_the_module_as_it_is() {
-        assert_eq!(
-            with_float_controls(module(), FloatControls::default()),
-            module()
-        );
+        assert_eq!(with_float_controls(module(), FloatControls::default()), module());
     }
 }

@@ -32,9 +32,7 @@ fn read(path: &Path) -> String {
 /// Text of all files directly in a folder, one after the other.
 fn folder_text(folder: &str) -> String {
     let entries = std::fs::read_dir(root().join(folder)).expect("the folder exists");
-    let mut paths: Vec<_> = entries
-        .map(|entry| entry.expect("readable").path())
-        .collect();
+    let mut paths: Vec<_> = entries.map(|entry| entry.expect("readable").path()).collect();
     paths.sort();
     paths.iter().map(|path| read(path)).collect()
 }
@@ -42,12 +40,8 @@ fn folder_text(folder: &str) -> String {
 /// First words after `prefix` of the lines that start with it, without trailing punctuation.
 fn declared(text: &str, prefix: &str) -> BTreeSet<String> {
     let lines = text.lines().filter_map(|line| line.strip_prefix(prefix));
-    let word = |rest: &str| {
-        rest.split(|c: char| !c.is_alphanumeric() && c != '_')
-            .next()
-            .unwrap_or_default()
-            .to_owned()
-    };
+    let word =
+        |rest: &str| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default().to_owned();
     lines.map(word).collect()
 }
 
@@ -62,15 +56,9 @@ fn every_record_of_both_sides_is_listed_here() {
     for name in HOST_ONLY {
         assert!(rust.remove(name), "{name} is no longer in src/layout");
     }
-    assert_eq!(
-        rust, listed,
-        "structs of src/layout (left) and of this test"
-    );
+    assert_eq!(rust, listed, "structs of src/layout (left) and of this test");
     let glsl = declared(&folder_text("shaders/layout"), "struct ");
-    assert_eq!(
-        glsl, listed,
-        "structs of shaders/layout (left) and of this test"
-    );
+    assert_eq!(glsl, listed, "structs of shaders/layout (left) and of this test");
 }
 
 #[test]
@@ -84,27 +72,15 @@ fn every_kernel_lays_out_every_record_as_rust_does() {
         let (structs, strides) = (reflection.records(), reflection.strides());
         for record in &records {
             for members in structs.get(record.name).into_iter().flatten() {
-                assert_eq!(
-                    members, &record.members,
-                    "{} in {kernel}, {fetch:?}",
-                    record.name
-                );
+                assert_eq!(members, &record.members, "{} in {kernel}, {fetch:?}", record.name);
             }
             for stride in strides.get(record.name).into_iter().flatten() {
-                assert_eq!(
-                    *stride, record.size,
-                    "size of {} in {kernel}, {fetch:?}",
-                    record.name
-                );
+                assert_eq!(*stride, record.size, "size of {} in {kernel}, {fetch:?}", record.name);
                 proved.insert(record.name.to_owned());
             }
         }
     }
-    assert_eq!(
-        proved,
-        set(records.iter().map(|r| r.name)),
-        "records with an array in some kernel"
-    );
+    assert_eq!(proved, set(records.iter().map(|r| r.name)), "records with an array in some kernel");
 }
 
 fn all_kernels() -> impl Iterator<Item = (&'static str, Fetch)> {
@@ -131,10 +107,7 @@ fn all_constants() -> BTreeMap<String, u32> {
     for record in records() {
         let name = record.snake_name();
         if glsl.contains(&format!(" load_{name}(")) {
-            all.insert(
-                format!("{}_WORDS", name.to_uppercase()),
-                (record.size / 16) as u32,
-            );
+            all.insert(format!("{}_WORDS", name.to_uppercase()), (record.size / 16) as u32);
         }
     }
     all
@@ -143,27 +116,16 @@ fn all_constants() -> BTreeMap<String, u32> {
 #[test]
 fn every_constant_of_both_sides_is_listed_here_and_in_the_kernel() {
     let rust = declared(&folder_text("src/layout"), "pub const ");
-    assert_eq!(
-        rust,
-        constants().into_keys().collect(),
-        "src/layout (left) and this test"
-    );
+    assert_eq!(rust, constants().into_keys().collect(), "src/layout (left) and this test");
     let text = folder_text("shaders/layout");
     let mut glsl = declared(&text, "const uint ");
     glsl.append(&mut declared(&text, "const float "));
     let others = text.lines().filter(|line| line.starts_with("const "));
-    assert_eq!(
-        others.count(),
-        glsl.len(),
-        "a constant of another type: teach it to this test"
-    );
+    assert_eq!(others.count(), glsl.len(), "a constant of another type: teach it to this test");
     let expected: BTreeSet<String> = all_constants().into_keys().collect();
     assert_eq!(glsl, expected, "shaders/layout (left) and this test");
     let stored = stored_constants().into_values().collect();
-    assert_eq!(
-        expected, stored,
-        "this test (left) and store_constants of {KERNEL}"
-    );
+    assert_eq!(expected, stored, "this test (left) and store_constants of {KERNEL}");
 }
 
 /// Name of the constant at each index, as the text of the layout kernel has it.
@@ -175,9 +137,7 @@ fn stored_constants() -> BTreeMap<u32, String> {
         };
         let (index, value) = rest.split_once("] = ").expect("an assignment");
         let value = value.trim_end_matches(';');
-        let bare = value
-            .strip_prefix("floatBitsToUint(")
-            .and_then(|v| v.strip_suffix(')'));
+        let bare = value.strip_prefix("floatBitsToUint(").and_then(|v| v.strip_suffix(')'));
         let index = index.parse().expect("a number");
         found.insert(index, bare.unwrap_or(value).to_owned());
     }
@@ -191,14 +151,8 @@ fn every_constant_has_the_same_bits_on_both_sides() {
         let words = shaders::kernel("parity/layout", fetch).expect("the layout kernel");
         let module = rspirv::dr::load_words(words).expect("valid SPIR-V");
         let values = Reflection::of(&module).constant_stores("store_constants(");
-        let named = stored_constants()
-            .into_iter()
-            .map(|(index, name)| (name, values[&index]));
-        assert_eq!(
-            named.collect::<BTreeMap<_, _>>(),
-            expected,
-            "GLSL (left) and Rust"
-        );
+        let named = stored_constants().into_iter().map(|(index, name)| (name, values[&index]));
+        assert_eq!(named.collect::<BTreeMap<_, _>>(), expected, "GLSL (left) and Rust");
     }
 }
 
@@ -210,11 +164,7 @@ fn the_layout_kernel_reads_every_record_the_way_kernels_do() {
     for (number, record) in records.iter().enumerate() {
         let name = record.snake_name();
         let load = format!("{} load_{name}(uint index)", record.name);
-        let source = if glsl.contains(&load) {
-            format!("load_{name}(i)")
-        } else {
-            format!("{name}_in[i]")
-        };
+        let source = if glsl.contains(&load) { format!("load_{name}(i)") } else { format!("{name}_in[i]") };
         let case = format!("case {number}u: {name}_out[i] = {source}; break;");
         assert!(text.contains(&case), "{KERNEL} lacks `{case}`");
     }
@@ -228,10 +178,7 @@ type Source = (String, usize, String);
 /// What a record's `load_*` must read: members flattened to what fits into a word.
 fn expected_sources(record: &str, at: usize, prefix: &str) -> Vec<Source> {
     let records = records();
-    let record = records
-        .iter()
-        .find(|r| r.name == record)
-        .expect("a listed record");
+    let record = records.iter().find(|r| r.name == record).expect("a listed record");
     let mut found = Vec::new();
     for member in &record.members {
         let (path, offset) = (format!("{prefix}{}", member.name), at + member.offset);
@@ -256,32 +203,17 @@ fn written_sources(body: &str) -> Vec<Source> {
     for line in body.lines().map(str::trim) {
         if let Some(rest) = line.strip_prefix("uvec4 w") {
             let (name, call) = rest.split_once(" = ").expect("an assignment");
-            let address = call
-                .split_once('(')
-                .expect("a call")
-                .1
-                .trim_end_matches(");");
+            let address = call.split_once('(').expect("a call").1.trim_end_matches(");");
             word = name.parse().expect("words are numbered");
-            let expected = if word == 0 {
-                "at".to_owned()
-            } else {
-                format!("at + {word}u")
-            };
+            let expected = if word == 0 { "at".to_owned() } else { format!("at + {word}u") };
             assert_eq!(address, expected, "{line}");
         } else if let Some(rest) = line.strip_prefix("r.") {
-            let (path, value) = rest
-                .trim_end_matches(';')
-                .split_once(" = ")
-                .expect("an assignment");
-            let float = value
-                .strip_prefix("uintBitsToFloat(")
-                .and_then(|value| value.strip_suffix(')'));
+            let (path, value) = rest.trim_end_matches(';').split_once(" = ").expect("an assignment");
+            let float = value.strip_prefix("uintBitsToFloat(").and_then(|value| value.strip_suffix(')'));
             let lanes = float.unwrap_or(value);
             let (variable, swizzle) = lanes.split_once('.').unwrap_or((lanes, "xyzw"));
             assert_eq!(variable, format!("w{word}"), "{line}");
-            let first = "xyzw"
-                .find(swizzle)
-                .unwrap_or_else(|| panic!("{line}: lanes in order"));
+            let first = "xyzw".find(swizzle).unwrap_or_else(|| panic!("{line}: lanes in order"));
             let glsl = match (float.is_some(), swizzle.len()) {
                 (true, 1) => "float".to_owned(),
                 (false, 1) => "uint".to_owned(),
@@ -310,22 +242,11 @@ fn load_functions_take_every_member_from_its_own_bytes() {
         } else {
             format!("index * {upper}_WORDS")
         };
-        assert!(
-            body.contains(&format!("uint at = {base};\n")),
-            "load_{name}: at is not {base}"
-        );
-        assert_eq!(
-            written_sources(body),
-            expected_sources(record.name, 0, ""),
-            "load_{name}"
-        );
+        assert!(body.contains(&format!("uint at = {base};\n")), "load_{name}: at is not {base}");
+        assert_eq!(written_sources(body), expected_sources(record.name, 0, ""), "load_{name}");
         proved += 1;
     }
-    assert_eq!(
-        proved,
-        glsl.matches("(uint index) {").count(),
-        "load functions proved"
-    );
+    assert_eq!(proved, glsl.matches("(uint index) {").count(), "load functions proved");
 }
 
 /// What kernels bind, as `shaders/kernels/bindings.glsl` promises: (set, binding, storage name, texel name).
@@ -359,17 +280,8 @@ fn bindings(fetch: Fetch) -> BTreeSet<Resource> {
             _ => ("storage", block),
         };
         let paged = set == 0 && texel.is_some();
-        let count = if paged {
-            format!("[{PAGES}]")
-        } else {
-            String::new()
-        };
-        Resource {
-            set,
-            binding,
-            kind: format!("{kind}{count}"),
-            name: name.to_owned(),
-        }
+        let count = if paged { format!("[{PAGES}]") } else { String::new() };
+        Resource { set, binding, kind: format!("{kind}{count}"), name: name.to_owned() }
     };
     BINDINGS.iter().map(resource).collect()
 }
@@ -390,17 +302,10 @@ fn the_bindings_file_binds_all_that_is_promised() {
     let text = "#version 460\n#extension GL_EXT_scalar_block_layout : require\n\
                 #extension GL_GOOGLE_include_directive : require\n\
                 #include \"kernels/bindings.glsl\"\nvoid main() {}\n";
-    for (fetch, defines) in [
-        (Fetch::Storage, &[][..]),
-        (Fetch::Texel, &["FETCH_TEXEL"][..]),
-    ] {
+    for (fetch, defines) in [(Fetch::Storage, &[][..]), (Fetch::Texel, &["FETCH_TEXEL"][..])] {
         let words = compile::glsl_to_spirv(text, "all.comp", &root().join("shaders"), defines);
         let words = words.unwrap_or_else(|e| panic!("{e}"));
         let module = rspirv::dr::load_words(&words).expect("valid SPIR-V");
-        assert_eq!(
-            Reflection::of(&module).resources(),
-            bindings(fetch),
-            "{fetch:?}"
-        );
+        assert_eq!(Reflection::of(&module).resources(), bindings(fetch), "{fetch:?}");
     }
 }

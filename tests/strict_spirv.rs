@@ -41,9 +41,7 @@ fn probe(functions: &str) -> Module {
 
 /// A shader whose `victim` returns one expression.
 fn probe_expression(expression: &str) -> Module {
-    probe(&format!(
-        "float victim(float a, vec4 v, int i) {{\n  return {expression};\n}}"
-    ))
+    probe(&format!("float victim(float a, vec4 v, int i) {{\n  return {expression};\n}}"))
 }
 
 #[test]
@@ -97,10 +95,7 @@ fn every_inexact_glsl_expression_is_refused_with_function_and_line() {
         ("cross(v.xyz, v.yzw).x", "GLSL.std.450 Cross"),
         ("reflect(v.xyz, v.yzw).x", "GLSL.std.450 Reflect"),
         ("refract(v.xyz, v.yzw, a).x", "GLSL.std.450 Refract"),
-        (
-            "faceforward(v.xy, v.yz, v.zw).x",
-            "GLSL.std.450 FaceForward",
-        ),
+        ("faceforward(v.xy, v.yz, v.zw).x", "GLSL.std.450 FaceForward"),
         ("sign(a)", "GLSL.std.450 FSign"),
         ("fract(a)", "GLSL.std.450 Fract"),
         ("ceil(a)", "GLSL.std.450 Ceil"),
@@ -116,14 +111,12 @@ fn every_inexact_glsl_expression_is_refused_with_function_and_line() {
     for (expression, operation) in cases {
         let found = strict::check(&probe_expression(expression));
         let refused = found.iter().find(|v| v.operation == operation);
-        let refused =
-            refused.unwrap_or_else(|| panic!("{expression}: {operation} not in {found:?}"));
+        let refused = refused.unwrap_or_else(|| panic!("{expression}: {operation} not in {found:?}"));
         assert_eq!(refused.function, "victim", "{expression}");
         assert_eq!(refused.line, 13, "{expression}");
         assert_eq!(refused.file, "shaders/kernels/probe.comp", "{expression}");
         let message = refused.to_string();
-        let start =
-            format!("shaders/kernels/probe.comp:13: {operation} in `victim` is not strict: ");
+        let start = format!("shaders/kernels/probe.comp:13: {operation} in `victim` is not strict: ");
         assert!(message.starts_with(&start), "{message}");
     }
 }
@@ -144,11 +137,7 @@ fn every_exact_glsl_expression_is_accepted() {
         "KNOB * a",
     ];
     for expression in exact {
-        assert_eq!(
-            strict::check(&probe_expression(expression)),
-            [],
-            "{expression}"
-        );
+        assert_eq!(strict::check(&probe_expression(expression)), [], "{expression}");
     }
 }
 
@@ -189,21 +178,14 @@ fn every_extended_operation_outside_the_list_is_refused() {
         let mut module = absolute.clone();
         let is_absolute = |i: &&mut Instruction| i.class.opcode == Op::ExtInst;
         let replaced = module.all_inst_iter_mut().find(is_absolute);
-        replaced.expect("the expression takes abs").operands[1] =
-            Operand::LiteralExtInstInteger(number);
+        replaced.expect("the expression takes abs").operands[1] = Operand::LiteralExtInstInteger(number);
         if strict::check(&module).is_empty() {
-            accepted.insert(format!(
-                "{:?}",
-                GlslStd450Op::from_u32(number).expect("known")
-            ));
+            accepted.insert(format!("{:?}", GlslStd450Op::from_u32(number).expect("known")));
         }
     }
     accepted.insert("FAbs".to_owned());
     assert!(strict::check(&absolute).is_empty());
-    assert_eq!(
-        accepted,
-        allowed.split_whitespace().map(str::to_owned).collect()
-    );
+    assert_eq!(accepted, allowed.split_whitespace().map(str::to_owned).collect());
 }
 
 #[test]
@@ -220,10 +202,7 @@ fn only_the_approximate_function_itself_is_exempt() {
                 float not_approx_it(float a) { return 2.0 / a; }\n\
                 float victim(float a, vec4 v, int i) { return approx_it(a) + not_approx_it(a); }";
     let found = strict::check(&probe(text));
-    let places: Vec<_> = found
-        .iter()
-        .map(|v| (v.function.as_str(), v.line))
-        .collect();
+    let places: Vec<_> = found.iter().map(|v| (v.function.as_str(), v.line)).collect();
     assert_eq!(places, [("helper", 13), ("not_approx_it", 16)]);
 }
 
@@ -242,36 +221,22 @@ fn a_violation_in_an_included_file_names_that_file() {
     let module = strict::load(&words.expect("valid GLSL")).expect("valid SPIR-V");
     let found = strict::check(&module);
     assert_eq!(found.len(), 1, "{found:?}");
-    assert_eq!(
-        (found[0].file.as_str(), found[0].line),
-        ("shaders/shading/bad.glsl", 3)
-    );
+    assert_eq!((found[0].file.as_str(), found[0].line), ("shaders/shading/bad.glsl", 3));
 }
 
 #[test]
 fn a_glsl_error_names_file_line_and_cause() {
     let compile = |text| {
-        compile::glsl_to_spirv(
-            text,
-            "shaders/kernels/x.comp",
-            Path::new("no such folder"),
-            &[],
-        )
-        .expect_err("the text is wrong")
+        compile::glsl_to_spirv(text, "shaders/kernels/x.comp", Path::new("no such folder"), &[])
+            .expect_err("the text is wrong")
     };
     let undeclared = compile("#version 460\nvoid main() {\n  nothing();\n}\n");
-    assert!(
-        undeclared.starts_with("shaders/kernels/x.comp:3: error: 'nothing'"),
-        "{undeclared}"
-    );
+    assert!(undeclared.starts_with("shaders/kernels/x.comp:3: error: 'nothing'"), "{undeclared}");
     let missing = compile(
         "#version 460\n#extension GL_GOOGLE_include_directive : require\n\
          #include \"shading/none.glsl\"\nvoid main() {}\n",
     );
-    assert!(
-        missing.contains("shaders/kernels/x.comp:3: error"),
-        "{missing}"
-    );
+    assert!(missing.contains("shaders/kernels/x.comp:3: error"), "{missing}");
     assert!(missing.contains("shaders/shading/none.glsl"), "{missing}");
 }
 
@@ -335,18 +300,8 @@ fn stripping_removes_lines_and_source_and_keeps_names() {
     assert!(module.all_inst_iter().any(|i| i.class.opcode == Op::Line));
     let names = module.debug_names.clone();
     strict::strip_lines(&mut module);
-    let text_of = [
-        Op::Line,
-        Op::NoLine,
-        Op::Source,
-        Op::SourceContinued,
-        Op::String,
-    ];
-    assert!(
-        !module
-            .all_inst_iter()
-            .any(|i| text_of.contains(&i.class.opcode))
-    );
+    let text_of = [Op::Line, Op::NoLine, Op::Source, Op::SourceContinued, Op::String];
+    assert!(!module.all_inst_iter().any(|i| text_of.contains(&i.class.opcode)));
     assert_eq!(module.debug_names, names);
     strict::load(&strict::assemble(&module)).expect("still valid");
 }
@@ -354,10 +309,7 @@ fn stripping_removes_lines_and_source_and_keeps_names() {
 /// Results of float arithmetic in functions whose full name passes.
 fn arithmetic_in(module: &Module, wanted: impl Fn(&str) -> bool) -> HashSet<u32> {
     let name_of = |id| {
-        let names = module
-            .debug_names
-            .iter()
-            .filter(|i| i.class.opcode == Op::Name);
+        let names = module.debug_names.iter().filter(|i| i.class.opcode == Op::Name);
         names
             .filter(|i| i.operands[0] == Operand::IdRef(id))
             .map(|i| i.operands[1].unwrap_literal_string().to_owned())
@@ -369,13 +321,7 @@ fn arithmetic_in(module: &Module, wanted: impl Fn(&str) -> bool) -> HashSet<u32>
         .filter(|f| wanted(&name_of(f.def_id().expect("a function has an id"))))
         .flat_map(|f| f.all_inst_iter())
         .filter(|i| {
-            let arithmetic = [
-                Op::FAdd,
-                Op::FSub,
-                Op::FMul,
-                Op::FNegate,
-                Op::VectorTimesScalar,
-            ];
+            let arithmetic = [Op::FAdd, Op::FSub, Op::FMul, Op::FNegate, Op::VectorTimesScalar];
             arithmetic.contains(&i.class.opcode)
         })
         .map(|i| i.result_id.expect("arithmetic has a result"))
@@ -395,15 +341,8 @@ fn every_embedded_kernel_is_strict_decorated_and_stripped() {
             let words = shaders::kernel(name, fetch).expect("a listed kernel exists");
             let module = strict::load(words).expect("valid");
             assert_eq!(strict::check(&module), [], "{name}");
-            assert_eq!(
-                strict::no_contraction(&module),
-                float_results(&module),
-                "{name}"
-            );
-            assert!(
-                !module.all_inst_iter().any(|i| i.class.opcode == Op::Line),
-                "{name}"
-            );
+            assert_eq!(strict::no_contraction(&module), float_results(&module), "{name}");
+            assert!(!module.all_inst_iter().any(|i| i.class.opcode == Op::Line), "{name}");
             assert_eq!(module.header.expect("a header").version(), (1, 5), "{name}");
             kernels += 1;
         }
@@ -419,10 +358,7 @@ fn every_kernel_file_is_embedded() {
         for entry in std::fs::read_dir(folder.join(below)).expect("a folder of kernels") {
             let path = entry.expect("readable").path();
             if path.extension().is_some_and(|e| e == "comp") {
-                let stem = path
-                    .file_stem()
-                    .and_then(|s| s.to_str())
-                    .expect("plain names");
+                let stem = path.file_stem().and_then(|s| s.to_str()).expect("plain names");
                 files.push(format!("{prefix}{stem}"));
             }
         }

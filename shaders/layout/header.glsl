@@ -64,10 +64,11 @@ struct SceneHeader {
     uint hide_background;
     // 1 if auxiliary values are recorded.
     uint aovs;
+    // Relative widening of the top level's box test (`approx_intersect_node`): covers the rounding of rays in object space.
+    float top_margin;
     uint pad0;
     uint pad1;
     uint pad2;
-    uint pad3;
 };
 
 // Intervals in the tabulated filter's inverse CDF.

@@ -79,7 +79,7 @@ DirectionSample sample_cook_torrance(Material material, vec3 wo, vec2 u, float u
     } else if (u_lobe < p) {
         wi = reflect_about(wo, sample_beckmann(u, material.m1));
     } else {
-        wi = sample_cosine_hemisphere(u);
+        wi = square_to_cosine_hemisphere(u);
     }
     if (!on_upper_side(wo, wi)) {
         return no_direction();

@@ -27,7 +27,7 @@ float pdf_lambert(Material material, vec3 wo, vec3 wi) {
 
 // Cosine-weighted over the hemisphere. `u`: 0..1 each, excluding 1; `u_lobe` is not used (one lobe).
 DirectionSample sample_lambert(Material material, vec3 wo, vec2 u, float u_lobe) {
-    vec3 wi = sample_cosine_hemisphere(u);
+    vec3 wi = square_to_cosine_hemisphere(u);
     if (!on_upper_side(wo, wi)) {
         return no_direction();
     }

@@ -43,7 +43,7 @@ DirectionSample sample_phong(Material material, vec3 wo, vec2 u, float u_lobe) {
     if (u_lobe < specular_probability(material)) {
         wi = turn_to(reflect_local(wo), sample_cos_power(u, material.exponent));
     } else {
-        wi = sample_cosine_hemisphere(u);
+        wi = square_to_cosine_hemisphere(u);
     }
     if (!on_upper_side(wo, wi)) {
         return no_direction();

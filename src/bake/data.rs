@@ -1,11 +1,21 @@
 //! The baked scene: flat arrays, ready to upload or to trace.
 
+use super::BakeError;
 use crate::layout::{Face, Instance, Light, Material, Node, SceneHeader, SceneView, Texture, Triangle, Vertex};
+
+/// One array of the data heap, as it is uploaded.
+#[derive(Clone, Copy, Debug)]
+pub struct HeapPiece<'a> {
+    /// Where it begins, in 16-byte words of the heap.
+    pub first_word: u32,
+    /// Its records; the last word is not always full.
+    pub bytes: &'a [u8],
+}
 
 /// Everything a backend needs. Indices inside are absolute and valid.
 #[derive(Clone, Debug, Default)]
 pub struct SceneData {
-    /// `first_*` members of the header are offsets into the heap that `heap_layout` describes.
+    /// `first_*` members of the header are offsets into the heap that `heap_pieces` describes.
     pub header: SceneHeader,
     /// Top-level and mesh BVHs, one after the other.
     pub nodes: Vec<Node>,
@@ -83,5 +93,56 @@ impl SceneData {
             hasher.update(bytes);
         }
         *hasher.finalize().as_bytes()
+    }
+
+    /// The data heap: all arrays but nodes and triangles, one after the other, each from a whole 16-byte word on. Four
+    /// top-level instances, texels or table entries share a word. `first_*` of the header are these `first_word`s.
+    pub fn heap_pieces(&self) -> [HeapPiece<'_>; 9] {
+        let mut next = 0;
+        self.heap_arrays().map(|bytes| {
+            let piece = HeapPiece { first_word: next, bytes };
+            next += bytes.len().div_ceil(16) as u32;
+            piece
+        })
+    }
+
+    /// Size of the data heap in 16-byte words.
+    pub fn heap_words(&self) -> u64 {
+        self.heap_arrays().iter().map(|bytes| bytes.len().div_ceil(16) as u64).sum()
+    }
+
+    /// Writes the places of the heap's arrays into the header.
+    pub(super) fn place_heap(&mut self) -> Result<(), BakeError> {
+        if self.heap_words() > u64::from(u32::MAX) {
+            return Err(BakeError::TooLarge { what: "words of data", count: self.heap_words() });
+        }
+        let first = self.heap_pieces().map(|piece| piece.first_word);
+        let h = &mut self.header;
+        [
+            h.first_instance,
+            h.first_top_instance,
+            h.first_face,
+            h.first_vertex,
+            h.first_material,
+            h.first_light,
+            h.first_texture,
+            h.first_texel,
+            h.first_table,
+        ] = first;
+        Ok(())
+    }
+
+    fn heap_arrays(&self) -> [&[u8]; 9] {
+        [
+            bytemuck::cast_slice(&self.instances),
+            bytemuck::cast_slice(&self.top_instances),
+            bytemuck::cast_slice(&self.faces),
+            bytemuck::cast_slice(&self.vertices),
+            bytemuck::cast_slice(&self.materials),
+            bytemuck::cast_slice(&self.lights),
+            bytemuck::cast_slice(&self.textures),
+            bytemuck::cast_slice(&self.texels),
+            bytemuck::cast_slice(&self.tables),
+        ]
     }
 }

@@ -1,6 +1,41 @@
 //! `Scene` to `SceneData`: the only folder that knows obvhs.
+//!
+//! Whatever reaches a pixel is computed in f64 with libm and rounded once, so that every machine bakes the same bits.
+//! Only the shape of the hierarchies may differ; it never decides what is hit.
 
+mod bvh;
 pub mod data;
+pub mod filter;
+mod geometry;
+mod instance;
+mod material;
+mod scene;
 pub mod srgb;
 
-pub use data::SceneData;
+pub use data::{HeapPiece, SceneData};
+pub use scene::bake;
+
+/// Why a scene cannot be baked: exit code 65.
+#[derive(Debug, thiserror::Error)]
+pub enum BakeError {
+    /// An index would not fit into 32 bits.
+    #[error("the scene has {count} {what}; at most 4294967295 are possible")]
+    TooLarge { what: &'static str, count: u64 },
+    /// A transform that single precision cannot carry.
+    #[error(
+        "object \"{name}\" is too large, too small or too far away: sizes from 1e-10 to 1e10 and coordinates up to 1e10 are possible"
+    )]
+    Placement { name: String },
+    /// Cook-Torrance has one or two lobes.
+    #[error("material \"{name}\" has {count} lobes; one or two are possible")]
+    Lobes { name: String, count: usize },
+    /// The eye is its own target, or the like.
+    #[error("the camera {0}")]
+    Camera(&'static str),
+    /// `film.unit` outside the range of floats.
+    #[error("film.unit is 2^{0}; exponents from -100 to 100 are possible")]
+    FilmUnit(i32),
+    /// No hierarchy is shallow enough.
+    #[error("the scene's hierarchy needs a stack of {0} entries; at most 32 are possible")]
+    Deep(u32),
+}

@@ -45,7 +45,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time: Option<Duration>,
     /// Further layers of an EXR, separated by commas.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = Aov::from_name)]
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
     aov: Vec<Aov>,
     /// Leave the background out; alpha is coverage.
     #[arg(long)]

@@ -29,6 +29,9 @@ pub struct Node {
     pub max_z: [u32; 2],
 }
 
+/// Entries of the traversal stack; bake builds no hierarchy that needs more.
+pub const STACK_SIZE: u32 = 32;
+
 /// A triangle in traversal order: what the watertight test needs, nothing else. 48 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]

@@ -67,10 +67,11 @@ pub struct SceneHeader {
     pub hide_background: u32,
     /// 1 if auxiliary values are recorded.
     pub aovs: u32,
+    /// Relative widening of the top level's box test (`approx_intersect_node`): covers the rounding of rays in object space.
+    pub top_margin: f32,
     pub _pad0: u32,
     pub _pad1: u32,
     pub _pad2: u32,
-    pub _pad3: u32,
 }
 
 /// Intervals in the tabulated filter's inverse CDF.

@@ -8,7 +8,7 @@ use crate::shading::lobe::{
 };
 use crate::shading::math::{INV_PI, div, dot3, rsqrt};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_zero};
-use crate::shading::warp::sample_cosine_hemisphere;
+use crate::shading::warp::square_to_cosine_hemisphere;
 use glam::{Vec2, Vec3};
 
 /// (k_d O_d (N.L) + k_s O_s (N.H)^n) / pi, per steradian. Local frame; zero unless both directions are on the upper side.
@@ -48,7 +48,7 @@ pub fn sample_blinn_phong(material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -
     let wi = if u_lobe < specular_probability(material) {
         reflect_about(wo, sample_cos_power(u, material.exponent))
     } else {
-        sample_cosine_hemisphere(u)
+        square_to_cosine_hemisphere(u)
     };
     if !on_upper_side(wo, wi) {
         return no_direction();

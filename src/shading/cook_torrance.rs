@@ -11,7 +11,7 @@ use crate::shading::lobe::{DirectionSample, no_direction, on_upper_side, reflect
 use crate::shading::math::{INV_PI, div, dot3, min_, rsqrt};
 use crate::shading::microfacet::{beckmann_lobes_d_slope, sample_beckmann, tan2_theta, v_cavity_g};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_zero};
-use crate::shading::warp::sample_cosine_hemisphere;
+use crate::shading::warp::square_to_cosine_hemisphere;
 use glam::{Vec2, Vec3};
 
 /// Fresnel reflectance of the facets, linear Rec. 709. `v_h`: cosine of the half angle between the directions, 0..1.
@@ -82,7 +82,7 @@ pub fn sample_cook_torrance(material: &Material, wo: Vec3, u: Vec2, u_lobe: f32)
     } else if u_lobe < p {
         reflect_about(wo, sample_beckmann(u, material.m1))
     } else {
-        sample_cosine_hemisphere(u)
+        square_to_cosine_hemisphere(u)
     };
     if !on_upper_side(wo, wi) {
         return no_direction();

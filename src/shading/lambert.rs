@@ -5,7 +5,7 @@ use crate::layout::Material;
 use crate::shading::lobe::{DirectionSample, no_direction, on_upper_side};
 use crate::shading::math::INV_PI;
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_zero};
-use crate::shading::warp::sample_cosine_hemisphere;
+use crate::shading::warp::square_to_cosine_hemisphere;
 use glam::{Vec2, Vec3};
 
 /// k_d O_d / pi times cos theta_i, per steradian. Local frame.
@@ -29,7 +29,7 @@ pub fn pdf_lambert(_material: &Material, wo: Vec3, wi: Vec3) -> f32 {
 /// Cosine-weighted over the hemisphere. `u`: 0..1 each, excluding 1; `u_lobe` is not used (one lobe).
 #[inline]
 pub fn sample_lambert(_material: &Material, wo: Vec3, u: Vec2, _u_lobe: f32) -> DirectionSample {
-    let wi = sample_cosine_hemisphere(u);
+    let wi = square_to_cosine_hemisphere(u);
     if !on_upper_side(wo, wi) {
         return no_direction();
     }

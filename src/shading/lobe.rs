@@ -92,3 +92,46 @@ pub fn specular_probability(material: &Material) -> f32 {
     let sum = diffuse + specular;
     if sum > 1.0e-20 { div(specular, sum) } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_of_zero_is_one_for_exponent_zero_only() {
+        assert_eq!(cos_power(0.0, 0.0), 1.0);
+        assert_eq!(cos_power(-0.5, 0.0), 1.0);
+        assert_eq!(cos_power(0.0, 2.0), 0.0);
+        assert_eq!(cos_power(-0.5, 2.0), 0.0);
+        assert_eq!(cos_power(1.000_000_2, 1e9), 1.0);
+        assert_eq!(cos_power(0.01, 1000.0), 0.0);
+        assert!((cos_power(0.5, 8.0) - 0.003_906_25).abs() < 1e-8);
+    }
+
+    #[test]
+    fn turning_takes_z_to_the_axis_and_keeps_angles() {
+        let axis = Vec3::new(-0.48, 0.6, 0.64);
+        assert!((turn_to(axis, Vec3::Z) - axis).length() < 1e-6);
+        let w = Vec3::new(0.36, -0.48, 0.8);
+        assert!((turn_to(axis, w).dot(axis) - 0.8).abs() < 1e-6);
+        assert!((turn_to(axis, w).length() - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_specular_share_follows_weights_and_colours() {
+        let mut material =
+            Material { k_d: 0.25, k_s: 0.75, color: Vec3::ONE, specular_color: Vec3::ONE, ..Material::default() };
+        assert_eq!(specular_probability(&material), 0.75);
+        material.color = Vec3::ZERO;
+        assert_eq!(specular_probability(&material), 1.0);
+        material.k_s = 0.0;
+        assert_eq!(specular_probability(&material), 0.0);
+    }
+
+    #[test]
+    fn reflection_about_a_facet_halves_the_angle() {
+        let (wo, m) = (Vec3::new(0.6, 0.0, 0.8), Vec3::Z);
+        assert!((reflect_about(wo, m) - reflect_local(wo)).length() < 1e-6);
+        assert!((reflect_about(wo, wo) - wo).length() < 1e-6);
+    }
+}

@@ -88,3 +88,72 @@ pub fn pdf_beckmann(wm: Vec3, m: f32) -> f32 {
     }
     beckmann_d_slope(tan2_theta(wm), m) * wm.z
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn beckmann_has_the_lectures_values() {
+        assert!((beckmann_d(1.0, 0.1) - 31.830_988).abs() < 4e-6 * 31.8);
+        let cos_h = libm::cos(std::f64::consts::PI / 19.0) as f32;
+        assert!((beckmann_d(cos_h, 0.1) - 2.076_730_7).abs() < 1e-5 * 2.08);
+        // Two lobes of the same slope are one; D(0) of the paper's copper is (.4/.16 + .6/.04) / pi.
+        let copper = beckmann_lobes_d_slope(0.0, 0.4, 0.2, 0.4, 0.6);
+        assert!((copper - 5.570_423).abs() < 1e-5);
+        assert_eq!(beckmann_lobes_d_slope(0.3, 0.4, 0.2, 1.0, 0.0), beckmann_d_slope(0.3, 0.4));
+    }
+
+    #[test]
+    fn the_projected_area_of_all_facets_is_one() {
+        // Integral of D cos a over the hemisphere = 2 pi times the integral of D cos a sin a over a, by Simpson's rule.
+        for m in [M_MIN, 0.01, 0.1, 0.3, 1.0] {
+            let steps = 4000;
+            let end = f64::min(libm::atan(8.0 * f64::from(m)), 1.57);
+            let width = end / f64::from(steps);
+            let mut sum = 0.0;
+            for i in 0..=steps {
+                let a = width * f64::from(i);
+                let tan = libm::tan(a);
+                let d = f64::from(beckmann_d_slope((tan * tan) as f32, m));
+                let weight = if i == 0 || i == steps { 1.0 } else { 2.0 + 2.0 * f64::from(i % 2) };
+                sum += weight * d * libm::cos(a) * libm::sin(a);
+            }
+            let area = 2.0 * std::f64::consts::PI * sum * width / 3.0;
+            assert!((area - 1.0).abs() < 1e-4, "m {m}: {area}");
+        }
+    }
+
+    #[test]
+    fn slopes_below_the_minimum_are_the_minimum_and_facets_below_the_horizon_are_none() {
+        assert_eq!(beckmann_d(1.0, 0.0), beckmann_d(1.0, M_MIN));
+        assert!(beckmann_d(1.0, 0.0).is_finite());
+        assert_eq!(beckmann_d(0.0, 0.3), 0.0);
+        assert_eq!(beckmann_d(-0.5, 0.3), 0.0);
+        assert_eq!(pdf_beckmann(Vec3::new(0.6, 0.0, -0.8), 0.3), 0.0);
+    }
+
+    #[test]
+    fn the_v_cavity_is_one_at_normal_incidence_and_falls_at_grazing() {
+        assert_eq!(v_cavity_g(1.0, 1.0, 1.0, 1.0), 1.0);
+        // 2 * .9 * .1 / .6 = .3, by masking and by shadowing alike.
+        assert!((v_cavity_g(0.9, 0.1, 0.6, 0.8) - 0.3).abs() < 1e-7);
+        assert!((v_cavity_g(0.9, 0.8, 0.6, 0.1) - 0.3).abs() < 1e-7);
+        // The kink: just inside and outside of 2 (N.H)(N.V) = V.H.
+        assert_eq!(v_cavity_g(0.5, 0.700_1, 0.7, 0.9), 1.0);
+        assert!(v_cavity_g(0.5, 0.699, 0.7, 0.9) < 1.0);
+        assert_eq!(v_cavity_g(0.5, 0.0, 0.0, 0.0), 0.0);
+    }
+
+    #[test]
+    fn sampled_facets_are_unit_and_upright_for_every_random_number() {
+        for x in [0.0, 1e-7, 0.3, 0.999_999_94] {
+            for y in [0.0, 0.25, 0.7, 0.999_999_94] {
+                for m in [0.0, 0.1, 1.0, 5.0] {
+                    let wm = sample_beckmann(Vec2::new(x, y), m);
+                    assert!((wm.length() - 1.0).abs() < 1e-6 && wm.z > 0.0, "{x} {y} {m}: {wm}");
+                }
+            }
+        }
+    }
+}

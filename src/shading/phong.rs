@@ -10,7 +10,7 @@ use crate::shading::lobe::{
 };
 use crate::shading::math::{INV_PI, INV_TWO_PI, dot3};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_zero};
-use crate::shading::warp::sample_cosine_hemisphere;
+use crate::shading::warp::square_to_cosine_hemisphere;
 use glam::{Vec2, Vec3};
 
 /// Diffuse and specular reflection times cosine (as printed the specular part carries none), per steradian.
@@ -49,7 +49,7 @@ pub fn sample_phong(material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> Dire
     let wi = if u_lobe < specular_probability(material) {
         turn_to(reflect_local(wo), sample_cos_power(u, material.exponent))
     } else {
-        sample_cosine_hemisphere(u)
+        square_to_cosine_hemisphere(u)
     };
     if !on_upper_side(wo, wi) {
         return no_direction();

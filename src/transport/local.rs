@@ -37,7 +37,7 @@ pub fn own_weight(material: &Material) -> f32 {
 }
 
 /// What the surface adds for one light, before any shadow: throughput * eval * radiance.
-pub fn light_contribution(weight: Spectrum, material: &Material, frame: &Frame, wo: Vec3, wi: Vec3, radiance: Spectrum) -> Spectrum {
+pub fn light_contribution(weight: Spectrum, material: &Material, frame: Frame, wo: Vec3, wi: Vec3, radiance: Spectrum) -> Spectrum {
     weight * eval_material(material, to_local(frame, wo), to_local(frame, wi)) * radiance
 }
 
@@ -58,7 +58,7 @@ pub fn shade_local(scene: &SceneView, path: &PathState, key: SampleKey, surface:
         for index in 0..scene.header.light_count {
             let light: Light = load_light(scene, index);
             let lit = sample_light(&light, surface.position);
-            let seen = light_contribution(weight, material, &frame, wo, lit.wi, lit.radiance);
+            let seen = light_contribution(weight, material, frame, wo, lit.wi, lit.radiance);
             if spectrum_max(seen) > 0.0 {
                 let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
                 let light_dither = dither_hash(key, DITHER_LIGHT + index);

@@ -54,7 +54,7 @@ pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, mat
     let entering = dot3(surface.normal_geometric, wo) >= 0.0;
     let eta = if entering { material.eta.x } else { rcp(material.eta.x) };
     let frame = frame_from_normal(facing_normal(surface, wo));
-    let wo_local = to_local(&frame, wo);
+    let wo_local = to_local(frame, wo);
     let reflectance = fresnel_dielectric(wo_local.z, eta);
     push_branch(scene, path, surface, mirror_direction(surface, wo), Vec4::splat(reflectance), LOBE_MIRROR, queues);
     let refraction = refract_local(wo_local, eta);
@@ -65,5 +65,5 @@ pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, mat
     inside.eta = if entering { material.eta.x } else { 1.0 };
     inside.absorption = if entering { material.absorption } else { Vec3::ZERO };
     let weight = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
-    push_branch(scene, &inside, surface, to_world(&frame, refraction.wt), weight, LOBE_REFRACT, queues);
+    push_branch(scene, &inside, surface, to_world(frame, refraction.wt), weight, LOBE_REFRACT, queues);
 }

@@ -183,14 +183,14 @@ fn malformed_files_are_refused_with_the_reason() {
                     serde_json::json!({ "x": 0, "y": 0, "width": 65_535, "height": 65_535 });
             }),
         ),
-        // Two samples cannot have these sums, and adding them up could overflow.
+        // One sample cannot have such a sum, and adding it up could overflow.
         (
             "sums of pixel (0, 0) of the crop exceed what 1 samples",
-            with_header(|h| h["samples"] = serde_json::json!([[0, 0x1]])),
+            with_header(|h| h["samples"] = serde_json::json!([[0, 1]])),
         ),
     ];
     for (reason, bytes) in cases {
-        // One sample may happen to be enough for two small sums: make the first one too large.
+        // The header alone would do for most sums: the first is made too large for certain.
         let bytes = if reason.starts_with("sums of") {
             with_large_sum(bytes)
         } else {

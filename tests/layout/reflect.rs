@@ -45,20 +45,14 @@ impl<'a> Reflection<'a> {
             offsets: HashMap::new(),
             decorations: HashMap::new(),
         };
-        let with_id = module
-            .all_inst_iter()
-            .filter_map(|i| Some((i.result_id?, i)));
+        let with_id = module.all_inst_iter().filter_map(|i| Some((i.result_id?, i)));
         result.instructions.extend(with_id);
         for name in &module.debug_names {
             match name.operands.as_slice() {
                 [Operand::IdRef(id), Operand::LiteralString(text)] => {
                     result.names.insert(*id, text.clone());
                 }
-                [
-                    Operand::IdRef(id),
-                    Operand::LiteralBit32(at),
-                    Operand::LiteralString(text),
-                ] => {
+                [Operand::IdRef(id), Operand::LiteralBit32(at), Operand::LiteralString(text)] => {
                     result.member_names.insert((*id, *at), text.clone());
                 }
                 _ => {}
@@ -67,12 +61,7 @@ impl<'a> Reflection<'a> {
         for annotation in &module.annotations {
             use Operand::{Decoration as Is, IdRef, LiteralBit32};
             match annotation.operands.as_slice() {
-                [
-                    IdRef(id),
-                    LiteralBit32(at),
-                    Is(Decoration::Offset),
-                    LiteralBit32(offset),
-                ] => {
+                [IdRef(id), LiteralBit32(at), Is(Decoration::Offset), LiteralBit32(offset)] => {
                     result.offsets.insert((*id, *at), *offset);
                 }
                 [IdRef(id), Is(decoration), LiteralBit32(value)] => {
@@ -88,20 +77,15 @@ impl<'a> Reflection<'a> {
     pub fn records(&self) -> BTreeMap<String, BTreeSet<Vec<Member>>> {
         let mut found: BTreeMap<String, BTreeSet<Vec<Member>>> = BTreeMap::new();
         for (id, name, members) in self.structs() {
-            let offsets: Option<Vec<u32>> = (0..members.len())
-                .map(|i| self.offsets.get(&(id, i as u32)).copied())
-                .collect();
+            let offsets: Option<Vec<u32>> =
+                (0..members.len()).map(|i| self.offsets.get(&(id, i as u32)).copied()).collect();
             // Structs of local variables have no offsets.
             let Some(offsets) = offsets else { continue };
-            let members = members
-                .iter()
-                .zip(&offsets)
-                .enumerate()
-                .map(|(i, (of, offset))| Member {
-                    name: self.member_names[&(id, i as u32)].clone(),
-                    glsl: self.type_name(*of),
-                    offset: *offset as usize,
-                });
+            let members = members.iter().zip(&offsets).enumerate().map(|(i, (of, offset))| Member {
+                name: self.member_names[&(id, i as u32)].clone(),
+                glsl: self.type_name(*of),
+                offset: *offset as usize,
+            });
             found.entry(name).or_default().insert(members.collect());
         }
         found
@@ -115,10 +99,7 @@ impl<'a> Reflection<'a> {
                 let element = array.operands[0].unwrap_id_ref();
                 let id = array.result_id.expect("a type has an id");
                 let stride = self.decorations[&(id, Decoration::ArrayStride)] as usize;
-                found
-                    .entry(self.type_name(element))
-                    .or_default()
-                    .insert(stride);
+                found.entry(self.type_name(element)).or_default().insert(stride);
             }
         }
         found
@@ -159,11 +140,7 @@ impl<'a> Reflection<'a> {
     /// What a function stores at constant indices of the runtime array of a block: index to bits.
     pub fn constant_stores(&self, function: &str) -> BTreeMap<u32, u32> {
         let named = |id| self.names.get(&id).is_some_and(|n| n.starts_with(function));
-        let function = self
-            .module
-            .functions
-            .iter()
-            .find(|f| f.def_id().is_some_and(named));
+        let function = self.module.functions.iter().find(|f| f.def_id().is_some_and(named));
         let mut found = BTreeMap::new();
         for store in function.expect("the function exists").all_inst_iter() {
             if store.class.opcode != Op::Store {
@@ -173,11 +150,7 @@ impl<'a> Reflection<'a> {
             let index = chain.operands.last().expect("an index").unwrap_id_ref();
             let value = store.operands[1].unwrap_id_ref();
             let (index, value) = (self.constant(index), self.constant(value));
-            assert_eq!(
-                found.insert(index, value),
-                None,
-                "index {index} is stored twice"
-            );
+            assert_eq!(found.insert(index, value), None, "index {index} is stored twice");
         }
         found
     }
@@ -194,17 +167,11 @@ impl<'a> Reflection<'a> {
 
     fn structs(&self) -> impl Iterator<Item = (Word, String, Vec<Word>)> {
         let globals = self.module.types_global_values.iter();
-        globals
-            .filter(|i| i.class.opcode == Op::TypeStruct)
-            .map(|i| {
-                let id = i.result_id.expect("a type has an id");
-                let members = i.operands.iter().map(Operand::unwrap_id_ref).collect();
-                (
-                    id,
-                    self.names.get(&id).cloned().unwrap_or_default(),
-                    members,
-                )
-            })
+        globals.filter(|i| i.class.opcode == Op::TypeStruct).map(|i| {
+            let id = i.result_id.expect("a type has an id");
+            let members = i.operands.iter().map(Operand::unwrap_id_ref).collect();
+            (id, self.names.get(&id).cloned().unwrap_or_default(), members)
+        })
     }
 
     fn array_length(&self, array: Word) -> u32 {
@@ -228,10 +195,7 @@ impl<'a> Reflection<'a> {
                     "int" => "i",
                     other => panic!("vector of {other}"),
                 };
-                format!(
-                    "{prefix}vec{}",
-                    instruction.operands[1].unwrap_literal_bit32()
-                )
+                format!("{prefix}vec{}", instruction.operands[1].unwrap_literal_bit32())
             }
             Op::TypeArray => {
                 let (element, length) = (self.type_name(operand(0)), self.array_length(id));
@@ -243,11 +207,7 @@ impl<'a> Reflection<'a> {
                     "vec4" | "uvec4" => 16,
                     other => panic!("array of {other}: teach its size to this test"),
                 };
-                assert_eq!(
-                    stride,
-                    Some(&size),
-                    "elements of {element}[{length}] have gaps"
-                );
+                assert_eq!(stride, Some(&size), "elements of {element}[{length}] have gaps");
                 format!("{element}[{length}]")
             }
             Op::TypeRuntimeArray => format!("{}[]", self.type_name(operand(0))),

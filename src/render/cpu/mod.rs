@@ -164,7 +164,7 @@ impl Renderer for CpuRenderer<'_> {
         }
         film.add_sums(job.crop, &sums);
         if want_aovs {
-            film.add_aovs(job.crop, &aovs, &job.samples);
+            film.add_aovs(job.crop, &aovs, job.samples.contains(&0));
         }
         film.record(job.samples.clone(), tally.nan_count.into_inner(), tally.clamped_count.into_inner());
         Ok(Counters {

@@ -11,6 +11,7 @@ use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
 use std::cell::Cell;
+use std::collections::HashMap;
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -37,10 +38,10 @@ pub struct Device {
 impl Device {
     fn new(instance: Arc<Instance>, info: DeviceInfo) -> Result<Arc<Device>, VulkanError> {
         let physical = instance.physical_devices()?.get(info.index).copied();
-        let physical = physical.ok_or_else(|| VulkanError::NoDevice(format!("Vulkan device {} is gone", info.index)))?;
-        let queues = [vk::DeviceQueueCreateInfo::default()
-            .queue_family_index(info.queue_family)
-            .queue_priorities(&[1.0])];
+        let physical =
+            physical.ok_or_else(|| VulkanError::NoDevice(format!("Vulkan device {} is gone", info.index)))?;
+        let queues =
+            [vk::DeviceQueueCreateInfo::default().queue_family_index(info.queue_family).queue_priorities(&[1.0])];
         let extensions: Vec<_> =
             info.portability_subset.then(|| ash::khr::portability_subset::NAME.as_ptr()).into_iter().collect();
         // Robust access: a bug of ours reads zeros or is dropped, and never harms another program.
@@ -59,13 +60,7 @@ impl Device {
             | vk::Result::ERROR_TOO_MANY_OBJECTS => VulkanError::Device(format!("cannot open {}: {error}", info.name)),
             _ => VulkanError::NoDevice(format!("cannot open {}: {error}", info.name)),
         })?;
-        let device = Device {
-            allocator: Mutex::new(None),
-            stuck: AtomicBool::new(false),
-            raw,
-            info,
-            instance,
-        };
+        let device = Device { allocator: Mutex::new(None), stuck: AtomicBool::new(false), raw, info, instance };
         const MIB: u64 = 1 << 20;
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: device.instance.raw.clone(),
@@ -145,13 +140,15 @@ pub struct Context {
     queue: vk::Queue,
     upload: Option<Buffer>,
     readback: Option<Buffer>,
+    /// What `run_kernel` has compiled, by SPIR-V and bytes of push constants.
+    kernels: HashMap<(Vec<u32>, usize), Kernel>,
     device: Arc<Device>,
 }
 
 impl Context {
-    /// Opens the loader and the device that `choice` means.
-    pub fn new(choice: &DeviceChoice) -> Result<Context, VulkanError> {
-        let instance = Instance::new()?;
+    /// Opens the loader and the device that `choice` means; `validate` as for `Instance::new`.
+    pub fn new(choice: &DeviceChoice, validate: bool) -> Result<Context, VulkanError> {
+        let instance = Instance::new(validate)?;
         let devices = instance.devices()?;
         let info = choice.pick(&devices)?.clone();
         Self::on(instance, info)
@@ -173,6 +170,7 @@ impl Context {
             queue,
             upload: None,
             readback: None,
+            kernels: HashMap::new(),
             device: device.clone(),
         };
         let pool = vk::CommandPoolCreateInfo::default().queue_family_index(info.queue_family);
@@ -204,6 +202,19 @@ impl Context {
         self.device.instance.is_validated()
     }
 
+    /// Makes one harmless mistake (a buffer without a use), to prove that the validation layer is heard.
+    #[doc(hidden)]
+    pub fn provoke_validation_message(&self) {
+        let raw = self.device.raw();
+        let info = vk::BufferCreateInfo::default().size(16);
+        // SAFETY: no driver minds a buffer that is never bound or used; only the layer does.
+        unsafe {
+            if let Ok(buffer) = raw.create_buffer(&info, None) {
+                raw.destroy_buffer(buffer, None);
+            }
+        }
+    }
+
     /// A buffer of `size` bytes with undefined contents.
     pub fn buffer(&self, name: &str, size: u64, place: Place) -> Result<Buffer, VulkanError> {
         Buffer::new(&self.device, name, size, place)
@@ -221,11 +232,7 @@ impl Context {
     }
 
     /// Records, submits and waits. `what` is what errors say was being done.
-    pub fn submit<'r>(
-        &'r mut self,
-        what: &str,
-        record: impl FnOnce(&Recorder<'r>),
-    ) -> Result<Submission, VulkanError> {
+    pub fn submit<'r>(&'r mut self, what: &str, record: impl FnOnce(&Recorder<'r>)) -> Result<Submission, VulkanError> {
         let raw = self.device.raw();
         let failed = || VulkanError::call(what.to_owned());
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
@@ -272,13 +279,13 @@ impl Context {
     }
 
     fn times(&self, used: u32) -> Result<Vec<f64>, VulkanError> {
-        let Some(queries) = self.queries.filter(|_| used > 0) else { return Ok(Vec::new()) };
+        let Some(queries) = self.queries.filter(|_| used > 0) else {
+            return Ok(Vec::new());
+        };
         let mut ticks = vec![0u64; used as usize];
         // SAFETY: these queries were written by the submission that was just waited for.
-        unsafe {
-            self.device.raw().get_query_pool_results(queries, 0, &mut ticks, vk::QueryResultFlags::TYPE_64)
-        }
-        .map_err(VulkanError::call("cannot read the device's clock"))?;
+        unsafe { self.device.raw().get_query_pool_results(queries, 0, &mut ticks, vk::QueryResultFlags::TYPE_64) }
+            .map_err(VulkanError::call("cannot read the device's clock"))?;
         let limits = self.info().limits;
         let mask = u64::MAX >> (64 - limits.timestamp_bits.clamp(1, 64));
         let seconds = |tick: &u64| (tick.wrapping_sub(ticks[0]) & mask) as f64 * limits.timestamp_ns * 1e-9;
@@ -340,7 +347,14 @@ impl Context {
         if groups > limit {
             return Err(VulkanError::Device(format!("{groups} workgroups of {name}; the device allows {limit}")));
         }
-        let kernel = self.kernel(name, words, &[(0, WORKGROUP)], push_constants.len())?;
+        let key = (words.to_vec(), push_constants.len());
+        let kernel = match self.kernels.get(&key) {
+            Some(kernel) => kernel.clone(),
+            None => {
+                let kernel = self.kernel(name, words, &[(0, WORKGROUP)], push_constants.len())?;
+                self.kernels.entry(key).or_insert(kernel).clone()
+            }
+        };
         let mut bound_buffers = Vec::new();
         for (at, spec) in buffers.iter().enumerate() {
             let size = match spec {

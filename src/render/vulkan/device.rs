@@ -2,6 +2,7 @@
 
 use super::error::VulkanError;
 use super::instance::Instance;
+use crate::shaders::FloatControls;
 use ash::vk;
 use serde::Serialize;
 use std::ffi::CStr;
@@ -50,17 +51,6 @@ impl fmt::Display for DeviceKind {
     }
 }
 
-/// Execution modes for 32-bit floats that the device can promise (DESIGN: strict rule 1).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct FloatSupport {
-    /// RoundingModeRTE.
-    pub rounding_rte: bool,
-    /// SignedZeroInfNanPreserve.
-    pub signed_zero_inf_nan: bool,
-    /// DenormPreserve.
-    pub denorm_preserve: bool,
-}
-
 /// Limits that decide sizes here.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Limits {
@@ -99,7 +89,9 @@ pub struct DeviceInfo {
     pub driver_uuid: String,
     pub subgroup_size: u32,
     pub subgroup_ballot: bool,
-    pub floats: FloatSupport,
+    /// Execution modes for 32-bit floats that the device promises (DESIGN: strict rule 1).
+    #[serde(serialize_with = "float_controls_as_words")]
+    pub float_controls: FloatControls,
     pub limits: Limits,
     /// Why it cannot be used; empty if it can.
     pub missing: Vec<String>,
@@ -171,7 +163,7 @@ pub(super) fn describe(instance: &Instance, index: usize, physical: vk::Physical
         driver_uuid: String::new(),
         subgroup_size: 0,
         subgroup_ballot: false,
-        floats: FloatSupport::default(),
+        float_controls: FloatControls::default(),
         limits: Limits::default(),
         missing: Vec::new(),
         queue_family: 0,
@@ -192,8 +184,7 @@ fn describe_1_2(instance: &Instance, physical: vk::PhysicalDevice, info: &mut De
     let raw = &instance.raw;
     let mut vulkan_1_1 = vk::PhysicalDeviceVulkan11Properties::default();
     let mut vulkan_1_2 = vk::PhysicalDeviceVulkan12Properties::default();
-    let mut properties =
-        vk::PhysicalDeviceProperties2::default().push_next(&mut vulkan_1_1).push_next(&mut vulkan_1_2);
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut vulkan_1_1).push_next(&mut vulkan_1_2);
     let mut features_1_2 = vk::PhysicalDeviceVulkan12Features::default();
     let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut features_1_2);
     // SAFETY: `physical` is of this instance and knows Vulkan 1.2, so it fills these structures.
@@ -217,7 +208,7 @@ fn describe_1_2(instance: &Instance, physical: vk::PhysicalDevice, info: &mut De
     info.subgroup_size = vulkan_1_1.subgroup_size;
     info.subgroup_ballot = vulkan_1_1.subgroup_supported_stages.contains(vk::ShaderStageFlags::COMPUTE)
         && vulkan_1_1.subgroup_supported_operations.contains(vk::SubgroupFeatureFlags::BALLOT);
-    info.floats = float_support(&vulkan_1_2);
+    info.float_controls = float_controls(&vulkan_1_2);
 
     // A queue with a clock if there is one: stages are then timed on the device.
     let compute = |family: &&(u32, &vk::QueueFamilyProperties)| family.1.queue_flags.contains(vk::QueueFlags::COMPUTE);
@@ -230,7 +221,8 @@ fn describe_1_2(instance: &Instance, physical: vk::PhysicalDevice, info: &mut De
         None => info.missing.push("no compute queue; every kernel is a compute shader".to_owned()),
     }
 
-    let local = memory.memory_heaps_as_slice().iter().filter(|heap| heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
+    let local =
+        memory.memory_heaps_as_slice().iter().filter(|heap| heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
     info.limits = Limits {
         storage_range: limits.max_storage_buffer_range.into(),
         texel_elements: limits.max_texel_buffer_elements.into(),
@@ -281,16 +273,33 @@ fn missing_limits(info: &mut DeviceInfo) {
     }
 }
 
-fn float_support(properties: &vk::PhysicalDeviceVulkan12Properties) -> FloatSupport {
+fn float_controls(properties: &vk::PhysicalDeviceVulkan12Properties) -> FloatControls {
     // Where widths may not differ at all, a module that sets a mode for 32 bits alone is not allowed.
     let free = |independence| independence != vk::ShaderFloatControlsIndependence::NONE;
-    FloatSupport {
+    FloatControls {
         rounding_rte: properties.shader_rounding_mode_rte_float32 == vk::TRUE
             && free(properties.rounding_mode_independence),
-        signed_zero_inf_nan: properties.shader_signed_zero_inf_nan_preserve_float32 == vk::TRUE,
+        signed_zero_inf_nan_preserve: properties.shader_signed_zero_inf_nan_preserve_float32 == vk::TRUE,
         denorm_preserve: properties.shader_denorm_preserve_float32 == vk::TRUE
             && free(properties.denorm_behavior_independence),
     }
+}
+
+fn float_controls_as_words<S: serde::Serializer>(controls: &FloatControls, to: S) -> Result<S::Ok, S::Error> {
+    to.collect_seq(float_control_names(*controls))
+}
+
+/// The execution modes as SPIR-V calls them.
+pub fn float_control_names(controls: FloatControls) -> Vec<&'static str> {
+    let FloatControls { rounding_rte, signed_zero_inf_nan_preserve, denorm_preserve } = controls;
+    [
+        (rounding_rte, "RoundingModeRTE"),
+        (signed_zero_inf_nan_preserve, "SignedZeroInfNanPreserve"),
+        (denorm_preserve, "DenormPreserve"),
+    ]
+    .into_iter()
+    .filter_map(|(offered, name)| offered.then_some(name))
+    .collect()
 }
 
 /// Which device the user means.
@@ -314,7 +323,7 @@ impl FromStr for DeviceChoice {
             "discrete" => DeviceChoice::Kind(DeviceKind::Discrete),
             "integrated" => DeviceChoice::Kind(DeviceKind::Integrated),
             "virtual" => DeviceChoice::Kind(DeviceKind::Virtual),
-            "cpu" => DeviceChoice::Kind(DeviceKind::Cpu),
+            "cpu" | "software" => DeviceChoice::Kind(DeviceKind::Cpu),
             _ => match text.parse() {
                 Ok(index) => DeviceChoice::Index(index),
                 Err(_) => DeviceChoice::Name(text.to_owned()),
@@ -350,8 +359,104 @@ impl DeviceChoice {
         Err(VulkanError::NoDevice(match self {
             DeviceChoice::Auto => "no Vulkan device on this machine".to_owned(),
             DeviceChoice::Index(index) => format!("no Vulkan device {index}; there are: {there}"),
-            DeviceChoice::Kind(kind) => format!("no Vulkan device of kind {kind}; there are: {there}"),
-            DeviceChoice::Name(part) => format!("no Vulkan device with \"{part}\" in its name; there are: {there}"),
+            DeviceChoice::Kind(kind) => {
+                format!("no Vulkan device of kind {kind}; there are: {there}")
+            }
+            DeviceChoice::Name(part) => {
+                format!("no Vulkan device with \"{part}\" in its name; there are: {there}")
+            }
         }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn device(index: usize, name: &str, kind: DeviceKind, missing: &[&str]) -> DeviceInfo {
+        DeviceInfo {
+            index,
+            name: name.to_owned(),
+            kind,
+            driver: "driver".to_owned(),
+            driver_version: "1".to_owned(),
+            vulkan_version: "1.2.0".to_owned(),
+            device_uuid: String::new(),
+            driver_uuid: String::new(),
+            subgroup_size: 32,
+            subgroup_ballot: true,
+            float_controls: FloatControls::default(),
+            limits: Limits::default(),
+            missing: missing.iter().map(|&text| text.to_owned()).collect(),
+            queue_family: 0,
+            portability_subset: false,
+        }
+    }
+
+    fn machine() -> Vec<DeviceInfo> {
+        vec![
+            device(0, "llvmpipe (LLVM 15)", DeviceKind::Cpu, &[]),
+            device(1, "Old Card 9", DeviceKind::Discrete, &["no scalarBlockLayout"]),
+            device(2, "Iris Graphics", DeviceKind::Integrated, &[]),
+            device(3, "GeForce 4070", DeviceKind::Discrete, &[]),
+        ]
+    }
+
+    fn picked(text: &str, devices: &[DeviceInfo]) -> Result<usize, String> {
+        let Ok(choice) = text.parse::<DeviceChoice>();
+        choice.pick(devices).map(|device| device.index).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn auto_prefers_a_discrete_device_that_can_be_used() {
+        let devices = machine();
+        assert_eq!(picked("auto", &devices), Ok(3));
+        assert_eq!(picked("auto", &devices[..3]), Ok(2));
+        assert_eq!(picked("auto", &devices[..1]), Ok(0));
+    }
+
+    #[test]
+    fn a_device_is_chosen_by_index_by_part_of_its_name_and_by_kind() {
+        let devices = machine();
+        for (text, index) in [("0", 0), ("LLVMpipe", 0), ("iris", 2), ("discrete", 3), ("integrated", 2), ("cpu", 0)] {
+            assert_eq!(picked(text, &devices), Ok(index), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_choice_that_nothing_fits_lists_what_there_is() {
+        let devices = machine();
+        let there = "0 (llvmpipe (LLVM 15)), 1 (Old Card 9), 2 (Iris Graphics), 3 (GeForce 4070)";
+        assert_eq!(picked("7", &devices), Err(format!("no Vulkan device 7; there are: {there}")));
+        let name = picked("Radeon", &devices);
+        assert_eq!(name, Err(format!("no Vulkan device with \"Radeon\" in its name; there are: {there}")));
+        assert_eq!(picked("virtual", &devices), Err(format!("no Vulkan device of kind virtual; there are: {there}")));
+        assert_eq!(picked("auto", &[]), Err("no Vulkan device on this machine".to_owned()));
+    }
+
+    #[test]
+    fn a_chosen_device_that_lacks_something_says_what() {
+        let error = picked("old", &machine());
+        assert_eq!(error, Err("Vulkan device 1 (Old Card 9) cannot be used: no scalarBlockLayout".to_owned()));
+    }
+
+    #[test]
+    fn a_device_with_few_bindings_is_refused_with_the_numbers() {
+        let mut small = device(0, "small", DeviceKind::Other, &[]);
+        small.limits = Limits {
+            group_invocations: 128,
+            stage_storage_buffers: 4,
+            stage_texel_buffers: 16,
+            stage_resources: 128,
+            ..Limits::default()
+        };
+        missing_limits(&mut small);
+        assert_eq!(small.missing.len(), 1);
+        assert!(small.missing[0].starts_with("4 storage and 16 texel buffers per kernel"), "{:?}", small.missing);
+        small.missing.clear();
+        small.limits = Limits { stage_storage_buffers: 16, stage_texel_buffers: 28, ..small.limits };
+        missing_limits(&mut small);
+        assert_eq!(small.missing, [""; 0]);
+        assert!(small.can_fetch_texel() && !small.can_fetch_storage());
     }
 }

@@ -5,6 +5,7 @@ use super::error::VulkanError;
 use super::validation::{self, Messages};
 use ash::{ext, khr, vk};
 use std::ffi::CStr;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// An instance, with validation if the environment asks for it and the layer is installed.
@@ -17,19 +18,25 @@ pub struct Instance {
 }
 
 impl Instance {
-    /// Opens the loader at run time and makes an instance of Vulkan 1.2.
+    /// Opens the system's loader at run time and makes an instance of Vulkan 1.2. The validation layers are asked for by
+    /// `validate` or by `GONIO_VALIDATION=1`.
     ///
-    /// `GONIO_VULKAN_LOADER` names another loader library than the system's; tests use it to act out a machine without.
-    pub fn new() -> Result<Arc<Instance>, VulkanError> {
-        let no_loader = |error: ash::LoadingError| VulkanError::NoLoader(error.to_string());
+    /// `GONIO_VULKAN_LOADER` names another loader library; tests use it to act out a machine without one.
+    pub fn new(validate: bool) -> Result<Arc<Instance>, VulkanError> {
+        let loader = std::env::var_os("GONIO_VULKAN_LOADER").map(PathBuf::from);
+        Self::with_loader(loader.as_deref(), validate)
+    }
+
+    /// The same with the loader library at `loader`; `None` for the system's.
+    pub fn with_loader(loader: Option<&Path>, validate: bool) -> Result<Arc<Instance>, VulkanError> {
         // SAFETY: the loader is a library made to be opened so; it is closed after everything that came from it.
         let entry = unsafe {
-            match std::env::var_os("GONIO_VULKAN_LOADER") {
+            match loader {
                 Some(path) => ash::Entry::load_from(path),
                 None => ash::Entry::load(),
             }
         }
-        .map_err(no_loader)?;
+        .map_err(|error| VulkanError::NoLoader(error.to_string()))?;
 
         // SAFETY: `entry` is open.
         let version = unsafe { entry.try_enumerate_instance_version() };
@@ -40,13 +47,13 @@ impl Instance {
                 device::version_text(version)
             )));
         }
-        Self::create(entry)
+        Self::create(entry, validate || validation::wanted())
     }
 
-    fn create(entry: ash::Entry) -> Result<Arc<Instance>, VulkanError> {
-        let listening = validation::wanted() && has_layer(&entry);
-        if validation::wanted() && !listening {
-            log::warn!("GONIO_VALIDATION=1, but the Khronos validation layer is not installed");
+    fn create(entry: ash::Entry, validate: bool) -> Result<Arc<Instance>, VulkanError> {
+        let listening = validate && has_layer(&entry);
+        if validate && !listening {
+            log::warn!("validation is wanted, but the Khronos validation layer is not installed");
         }
         let portability = has_extension(&entry, khr::portability_enumeration::NAME);
         let mut extensions = Vec::new();

@@ -4,6 +4,7 @@ use super::context::Device;
 use super::error::VulkanError;
 use super::memory::Buffer;
 use super::reflect::{self, Binding, BindingKind};
+use crate::shaders;
 use ash::vk;
 use std::sync::Arc;
 
@@ -25,7 +26,8 @@ struct Inner {
 }
 
 impl Kernel {
-    /// Compiles `words` with specialisation `constants` (id, value) for push constants of `push_bytes` bytes.
+    /// Compiles `words` with specialisation `constants` (id, value) for push constants of `push_bytes` bytes, and with
+    /// every float control the device offers.
     pub(super) fn new(
         device: &Arc<Device>,
         name: &str,
@@ -47,7 +49,8 @@ impl Kernel {
             bindings,
         };
         inner.make_layouts()?;
-        inner.make_pipeline(words, constants)?;
+        let words = shaders::with_float_controls(words, device.info().float_controls);
+        inner.make_pipeline(&words, constants)?;
         Ok(Kernel(Arc::new(inner)))
     }
 
@@ -111,11 +114,8 @@ impl Inner {
             // SAFETY: the device is alive; `info` points to locals.
             self.set_layouts.push(unsafe { raw.create_descriptor_set_layout(&info, None) }.map_err(failed())?);
         }
-        let push = [vk::PushConstantRange {
-            stage_flags: vk::ShaderStageFlags::COMPUTE,
-            offset: 0,
-            size: self.push_bytes,
-        }];
+        let push =
+            [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size: self.push_bytes }];
         let mut info = vk::PipelineLayoutCreateInfo::default().set_layouts(&self.set_layouts);
         if self.push_bytes > 0 {
             info = info.push_constant_ranges(&push);
@@ -190,16 +190,9 @@ pub struct Bound {
 impl Bound {
     /// Asks `find(set, binding)` for each binding of the kernel; a list shorter than a descriptor array is filled up
     /// with its first buffer.
-    pub(super) fn new(
-        kernel: &Kernel,
-        mut find: impl FnMut(u32, u32) -> Vec<Buffer>,
-    ) -> Result<Bound, VulkanError> {
-        let mut bound = Bound {
-            kernel: kernel.clone(),
-            pool: vk::DescriptorPool::null(),
-            sets: Vec::new(),
-            _buffers: Vec::new(),
-        };
+    pub fn new(kernel: &Kernel, mut find: impl FnMut(u32, u32) -> Vec<Buffer>) -> Result<Bound, VulkanError> {
+        let mut bound =
+            Bound { kernel: kernel.clone(), pool: vk::DescriptorPool::null(), sets: Vec::new(), _buffers: Vec::new() };
         if !kernel.bindings().is_empty() {
             bound.allocate()?;
         }

@@ -38,7 +38,10 @@ impl Buffer {
         let size = size.max(1).next_multiple_of(16);
         let failed = |why: String| VulkanError::Device(format!("cannot allocate {name} ({size} bytes): {why}"));
         if size > device.info().limits.allocation {
-            return Err(failed(format!("the device allocates at most {} bytes at once", device.info().limits.allocation)));
+            return Err(failed(format!(
+                "the device allocates at most {} bytes at once",
+                device.info().limits.allocation
+            )));
         }
         let (location, usage) = match place {
             Place::Device => (

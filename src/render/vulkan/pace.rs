@@ -1,7 +1,6 @@
 //! Keeping dispatches short: no watchdog fires, and an interrupt is soon noticed.
 
 use super::context::Submission;
-use std::time::Duration;
 
 /// A dispatch longer than this makes the chunk smaller (DESIGN: none takes more than 100 ms).
 const DISPATCH_LONG: f64 = 0.08;
@@ -83,7 +82,9 @@ impl Pace {
 /// Splits a submission's timestamps: `lead` seconds before the first round, then the rounds.
 /// Timestamps: start, first round's begin, then `STAGES` per round.
 pub fn split(times: &[f64]) -> (f64, Vec<StageTimes>) {
-    let [start, begin, rest @ ..] = times else { return (0.0, Vec::new()) };
+    let [start, begin, rest @ ..] = times else {
+        return (0.0, Vec::new());
+    };
     let mut last = *begin;
     let mut rounds = Vec::with_capacity(rest.len() / STAGES);
     for round in rest.chunks_exact(STAGES) {
@@ -101,6 +102,7 @@ pub fn split(times: &[f64]) -> (f64, Vec<StageTimes>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Duration;
 
     fn took(seconds: f64) -> (Submission, [StageTimes; 1]) {
         let submission = Submission { wall: Duration::from_secs_f64(seconds), times: Vec::new() };

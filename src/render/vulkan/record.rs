@@ -105,7 +105,11 @@ impl<'r> Recorder<'r> {
 
     /// Writes a few bytes (whole words, at most 65,536) that travel inside the command buffer.
     pub fn update(&self, buffer: &'r Buffer, offset: u64, bytes: &[u8]) {
-        assert!(offset + bytes.len() as u64 <= buffer.size() && bytes.len() <= 65_536, "update of {} bytes", bytes.len());
+        assert!(
+            offset + bytes.len() as u64 <= buffer.size() && bytes.len() <= 65_536,
+            "update of {} bytes",
+            bytes.len()
+        );
         // SAFETY: inside the buffer, which is a transfer target; the bytes are copied while recording.
         unsafe { self.device.raw().cmd_update_buffer(self.commands, buffer.raw(), offset, bytes) };
     }
@@ -118,12 +122,7 @@ impl<'r> Recorder<'r> {
         {
             // SAFETY: the query was reset at the start of this command buffer and is used once.
             unsafe {
-                self.device.raw().cmd_write_timestamp(
-                    self.commands,
-                    vk::PipelineStageFlags::BOTTOM_OF_PIPE,
-                    pool,
-                    at,
-                );
+                self.device.raw().cmd_write_timestamp(self.commands, vk::PipelineStageFlags::BOTTOM_OF_PIPE, pool, at);
             }
             self.next_query.set(at + 1);
         }

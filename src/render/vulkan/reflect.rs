@@ -30,8 +30,12 @@ pub fn bindings(words: &[u32]) -> Result<Vec<Binding>, String> {
     let used = reachable(&module)?;
     let mut found = Vec::new();
     for variable in &module.types_global_values {
-        let (Op::Variable, Some(id)) = (variable.class.opcode, variable.result_id) else { continue };
-        let Some(&Operand::StorageClass(class)) = variable.operands.first() else { continue };
+        let (Op::Variable, Some(id)) = (variable.class.opcode, variable.result_id) else {
+            continue;
+        };
+        let Some(&Operand::StorageClass(class)) = variable.operands.first() else {
+            continue;
+        };
         if !used.contains(&id) || !matches!(class, StorageClass::StorageBuffer | StorageClass::UniformConstant) {
             continue;
         }
@@ -41,7 +45,9 @@ pub fn bindings(words: &[u32]) -> Result<Vec<Binding>, String> {
         let mut count = 1;
         if record.class.opcode == Op::TypeArray {
             let length = id_operand(record, 1).and_then(|id| types.get(&id)).ok_or_else(unknown)?;
-            let Some(&Operand::LiteralBit32(value)) = length.operands.first() else { return Err(unknown()) };
+            let Some(&Operand::LiteralBit32(value)) = length.operands.first() else {
+                return Err(unknown());
+            };
             count = value;
             record = id_operand(record, 0).and_then(|id| types.get(&id)).ok_or_else(unknown)?;
         }
@@ -57,8 +63,17 @@ pub fn bindings(words: &[u32]) -> Result<Vec<Binding>, String> {
         let binding = decoration(&module, id, Decoration::Binding).ok_or_else(unknown)?;
         found.push(Binding { set, binding, kind, count });
     }
-    found.sort_by_key(|binding| (binding.set, binding.binding));
+    // One binding may be declared as several blocks; the largest array counts.
+    found.sort_by_key(|binding| (binding.set, binding.binding, u32::MAX - binding.count));
+    if let Some(pair) = found.windows(2).find(|pair| same_place(&pair[0], &pair[1]) && pair[0].kind != pair[1].kind) {
+        return Err(format!("set {} binding {} is declared in two kinds", pair[0].set, pair[0].binding));
+    }
+    found.dedup_by(|later, earlier| same_place(later, earlier));
     Ok(found)
+}
+
+fn same_place(a: &Binding, b: &Binding) -> bool {
+    (a.set, a.binding) == (b.set, b.binding)
 }
 
 /// Ids named by the functions that the entry point calls, directly or not.

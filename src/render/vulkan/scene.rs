@@ -161,6 +161,11 @@ impl SceneBuffers {
         self.sets.each_ref().map(Vec::len)
     }
 
+    /// Pages of one set: 0 nodes, 1 triangles, 2 data.
+    pub fn pages(&self, set: usize) -> &[Buffer] {
+        &self.sets[set]
+    }
+
     /// Specialisation constants 1 to 4.
     pub fn constants(&self) -> [(u32, u32); 4] {
         let [nodes, triangles, data] = self.page_counts().map(|count| count as u32);

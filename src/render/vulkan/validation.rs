@@ -29,9 +29,7 @@ pub fn wanted() -> bool {
 /// What to listen for. `messages` must outlive the instance that is given this.
 pub(super) fn messenger_info<'a>(messages: &Messages) -> vk::DebugUtilsMessengerCreateInfoEXT<'a> {
     vk::DebugUtilsMessengerCreateInfoEXT::default()
-        .message_severity(
-            vk::DebugUtilsMessageSeverityFlagsEXT::ERROR | vk::DebugUtilsMessageSeverityFlagsEXT::WARNING,
-        )
+        .message_severity(vk::DebugUtilsMessageSeverityFlagsEXT::ERROR | vk::DebugUtilsMessageSeverityFlagsEXT::WARNING)
         .message_type(vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION)
         .pfn_user_callback(Some(listen))
         .user_data(std::ptr::from_ref(messages).cast_mut().cast())

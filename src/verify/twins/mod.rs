@@ -1,6 +1,9 @@
 //! Every twin as a pair: the Rust function, and its number in a parity kernel. `compare` runs both.
 
+pub mod film;
 pub mod math;
+pub mod models;
+pub mod shading;
 
 use super::inputs::{ARGUMENTS, Domain, arguments};
 use crate::render::RenderError;
@@ -25,7 +28,7 @@ pub struct Family {
 }
 
 /// All of them.
-pub static FAMILIES: &[Family] = &[math::FAMILY];
+pub static FAMILIES: &[Family] = &[math::FAMILY, film::FAMILY, shading::FAMILY, models::FAMILY];
 
 /// The arguments of one evaluation, read as the harness in GLSL reads them.
 pub struct In<'a>(&'a [u32]);

@@ -1,0 +1,28 @@
+// From a point of the film to a ray.
+#ifndef SHADING_CAMERA_GLSL
+#define SHADING_CAMERA_GLSL
+
+#include "layout/camera.glsl"
+#include "shading/math.glsl"
+
+// A ray into the scene.
+struct CameraRay {
+    vec3 origin;
+    // Unit.
+    vec3 direction;
+};
+
+// The ray through a film point, in pixels of the full frame from its upper left corner (pixel centres at .5); points
+// outside the frame are fine. Perspective: all rays start at the eye. Orthographic: rays are parallel and start on
+// the image plane through the eye.
+CameraRay camera_ray(Camera camera, float film_x, float film_y) {
+    float s = film_x * camera.scale_x - 1.0;
+    float t = 1.0 - film_y * camera.scale_y;
+    vec3 offset = camera.right * s + camera.up * t;
+    if (camera.kind == CAMERA_PERSPECTIVE) {
+        return CameraRay(camera.eye, normalize3(camera.forward + offset));
+    }
+    return CameraRay(camera.eye + offset, normalize3(camera.forward));
+}
+
+#endif

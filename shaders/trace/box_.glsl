@@ -1,0 +1,144 @@
+// Boxes: the strict interval that bounds every accepted hit, and the approximate node test that never loses one.
+//
+// The picture must not depend on the shape of the hierarchy, so boxes choose what is visited, never what is hit:
+//
+// * `box_interval` is strict. A primitive's hit counts only at a t inside the interval of the primitive's own box
+//   (grown by `slack`, below), which holds for every honest hit and forbids those that rounding invents far from a
+//   triangle seen edge-on.
+// * `approx_intersect_node` may round differently on every device, so its boxes are widened by more than all the
+//   rounding between the two. Whatever is accepted lies in a box that is visited.
+//
+// # The bound
+//
+// u = 2^-24; d the direction; o the origin; for a box, m = max |corner - o| per axis; S = |d| / |d.kz| <= 1.
+//
+// 1. Triangle. A corner's sheared coordinate is fl(fl(v - o) - fl(S fl(v - o).kz)): off by at most u (2 S m.kz + m).
+//    The sign of an edge function is never wrong, because rounding is monotone (it may become 0), so the triangle
+//    that contains the ray in computed coordinates is accepted. Its point above the ray is the corners' weighted mean:
+//    inside the box, and off the ray per axis by that error. S is fl(d rcp(d.kz)) and the slabs use rcp(d), each
+//    within 2.3 u: 3.3 u S m.kz more; the slab's subtraction and product: 2 u m. Sum: u (5.3 S m.kz + 3 m).
+// 2. Sphere. The closest point to the centre is off by u (m + 16 S m.kz) (`sphere`).
+// 3. So slack = 16 u (m + S m.kz) covers both.
+// 4. Node, same level. Its planes contain the box (bake proves it in f64). With M = max over axes of
+//    |p - o| + 255 step >= m, slack is at most 32 u M, its rounding and the slab's 4 u M, the node's own (two
+//    differences, two products, one sum) 6 u M: 64 u M = 2^-18 M is enough: `MESH_MARGIN`.
+// 5. Node of the top level. An object-space hit is off in object space by the transform's rounding,
+//    8 u (|O||o| + |O.w|) for the origin and direction and 8 u |O||x - o| for to_object being rounded itself, and by slack
+//    in object space, 16 u (2 |O||x - o| + extents). In world units, with kappa = the largest row sum of |W||O|:
+//    relative 48 kappa u M + 6 u M, so `top_margin` = 128 kappa u; and an absolute part that bake adds to the box.
+#ifndef TRACE_BOX_GLSL
+#define TRACE_BOX_GLSL
+
+#include "layout/mod.glsl"
+#include "shading/math.glsl"
+#include "trace/ray.glsl"
+
+// 16 u: see the bound, step 3.
+const float SLACK = 9.536743e-7;
+// 64 u: see the bound, step 4.
+const float MESH_MARGIN = 3.8146973e-6;
+
+// The t at which the ray enters and leaves a box, in (near, far) order; near > far: it does not meet it.
+// `low`, `high`: corners minus the ray's origin. The box is grown by `SLACK` first.
+vec2 box_interval(LevelRay ray, vec3 low, vec3 high) {
+    float mx = max_(abs(low.x), abs(high.x));
+    float my = max_(abs(low.y), abs(high.y));
+    float mz = max_(abs(low.z), abs(high.z));
+    float depth = ray.kz == 0u ? mx : (ray.kz == 1u ? my : mz);
+    float travel = depth * abs(ray.sz);
+    float ex = (mx + abs(ray.direction.x) * travel) * SLACK;
+    float ey = (my + abs(ray.direction.y) * travel) * SLACK;
+    float ez = (mz + abs(ray.direction.z) * travel) * SLACK;
+    float x0 = (low.x - ex) * ray.inverse.x;
+    float x1 = (high.x + ex) * ray.inverse.x;
+    float y0 = (low.y - ey) * ray.inverse.y;
+    float y1 = (high.y + ey) * ray.inverse.y;
+    float z0 = (low.z - ez) * ray.inverse.z;
+    float z1 = (high.z + ez) * ray.inverse.z;
+    float near = max_(max_(min_(x0, x1), min_(y0, y1)), min_(z0, z1));
+    float far = min_(min_(max_(x0, x1), max_(y0, y1)), max_(z0, z1));
+    return vec2(near, far);
+}
+
+// Four quantised planes of one word, child 0 in the lowest byte.
+vec4 approx_planes(uint word) {
+    return vec4(float(word & 255u), float((word >> 8u) & 255u), float((word >> 16u) & 255u), float(word >> 24u));
+}
+
+// The bits that four children set if the ray meets their boxes. `meta`: their bytes of `child_meta`;
+// `near`, `far`: their intervals. Inner children set the bit of their priority in the top byte (Ylitie et al. 2017,
+// section 3.3: slot xor octant), leaves one bit a primitive in the lower 24.
+uint approx_hit_bits(uint meta, uint octant, vec4 near, vec4 far) {
+    uint is_inner = (meta & (meta << 1u)) & 0x10101010u;
+    uint inner_mask = (is_inner >> 4u) * 255u;
+    uint bit_index = (meta ^ (octant & inner_mask)) & 0x1f1f1f1fu;
+    uint child_bits = (meta >> 5u) & 0x07070707u;
+    uint hits = 0u;
+    // Written as "unless it misses": a NaN would be visited.
+    if (!(near.x > far.x)) {
+        hits |= (child_bits & 255u) << (bit_index & 31u);
+    }
+    if (!(near.y > far.y)) {
+        hits |= ((child_bits >> 8u) & 255u) << ((bit_index >> 8u) & 31u);
+    }
+    if (!(near.z > far.z)) {
+        hits |= ((child_bits >> 16u) & 255u) << ((bit_index >> 16u) & 31u);
+    }
+    if (!(near.w > far.w)) {
+        hits |= (child_bits >> 24u) << ((bit_index >> 24u) & 31u);
+    }
+    return hits;
+}
+
+// Which of a node's eight children the ray may meet at a t from 0 to `t_max` (both included), as the bits of
+// `approx_hit_bits`. `margin`: relative widening, `MESH_MARGIN` or the header's `top_margin`.
+// Source: Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
+// section 3; the widening is ours (the bound above).
+uint approx_intersect_node(Node node, LevelRay ray, float margin, float t_max) {
+    uint exponents = node.exponents_imask;
+    vec3 step_ = vec3(
+        uintBitsToFloat((exponents & 255u) << 23u),
+        uintBitsToFloat(((exponents >> 8u) & 255u) << 23u),
+        uintBitsToFloat(((exponents >> 16u) & 255u) << 23u)
+    );
+    vec3 corner = node.origin - ray.origin;
+    vec3 extent = abs(corner) + step_ * 255.0;
+    vec3 error = abs(ray.inverse) * (max(max(extent.x, extent.y), extent.z) * margin);
+    vec3 scale = step_ * ray.inverse;
+    vec3 start = corner * ray.inverse;
+    vec3 low = start - error;
+    vec3 high = start + error;
+
+    // Near and far planes by the sign of the direction; no swapping per child.
+    bvec3 negative = lessThan(ray.inverse, vec3(0.0));
+    uvec2 near_x = negative.x ? node.max_x : node.min_x;
+    uvec2 far_x = negative.x ? node.min_x : node.max_x;
+    uvec2 near_y = negative.y ? node.max_y : node.min_y;
+    uvec2 far_y = negative.y ? node.min_y : node.max_y;
+    uvec2 near_z = negative.z ? node.max_z : node.min_z;
+    uvec2 far_z = negative.z ? node.min_z : node.max_z;
+
+    uint hits = 0u;
+    // The two halves are written out: a loop would count against lavapipe's limit of loop iterations.
+    vec4 near = max(
+        max(approx_planes(near_x.x) * scale.x + low.x, approx_planes(near_y.x) * scale.y + low.y),
+        max(approx_planes(near_z.x) * scale.z + low.z, vec4(0.0))
+    );
+    vec4 far = min(
+        min(approx_planes(far_x.x) * scale.x + high.x, approx_planes(far_y.x) * scale.y + high.y),
+        min(approx_planes(far_z.x) * scale.z + high.z, vec4(t_max))
+    );
+    hits |= approx_hit_bits(node.child_meta.x, ray.octant, near, far);
+    near = max(
+        max(approx_planes(near_x.y) * scale.x + low.x, approx_planes(near_y.y) * scale.y + low.y),
+        max(approx_planes(near_z.y) * scale.z + low.z, vec4(0.0))
+    );
+    far = min(
+        min(approx_planes(far_x.y) * scale.x + high.x, approx_planes(far_y.y) * scale.y + high.y),
+        min(approx_planes(far_z.y) * scale.z + high.z, vec4(t_max))
+    );
+    hits |= approx_hit_bits(node.child_meta.y, ray.octant, near, far);
+    return hits;
+}
+
+#endif

@@ -1,0 +1,314 @@
+//! Eight-wide hierarchies: obvhs chooses their shape, everything else about them is ours.
+//!
+//! obvhs's own boxes are not conservative and its depth has no bound, so only its tree is taken: boxes are quantised
+//! here from the exact bounds of what lies below, and a tree too deep for the traversal stack is replaced by a
+//! median split.
+
+use crate::layout::Node;
+use glam::{DVec3, Vec3};
+use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
+use obvhs::ploc::PlocBuilder;
+
+/// Primitives in a leaf of a mesh; the node format has room for three.
+pub const MESH_LEAF: u32 = 3;
+/// Instances in a leaf of the top level: entering one costs more than testing its box.
+pub const TOP_LEAF: u32 = 1;
+
+/// Smallest and largest raw exponent of a node's grid: 2^-100, so that no distance is subnormal, to 2^100.
+const EXPONENT_RANGE: (i32, i32) = (27, 227);
+
+/// An axis-aligned box; empty if `min > max`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    pub min: Vec3,
+    pub max: Vec3,
+}
+
+impl Bounds {
+    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    #[must_use]
+    pub fn with(self, point: Vec3) -> Self {
+        Self { min: self.min.min(point), max: self.max.max(point) }
+    }
+
+    /// Twice the centre.
+    fn centre(&self) -> DVec3 {
+        self.min.as_dvec3() + self.max.as_dvec3()
+    }
+}
+
+/// One node without its boxes. Inner children lie side by side from `child_base`, in the order of their slots.
+#[derive(Clone, Copy, Debug, Default)]
+struct TreeNode {
+    child_base: u32,
+    primitive_base: u32,
+    inner_mask: u8,
+    /// As `Node::child_meta`.
+    meta: [u8; 8],
+}
+
+/// What a slot of a node holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Child {
+    Empty,
+    /// First primitive in the tree's order, and how many.
+    Leaf(u32, u32),
+    /// Index of a later node.
+    Inner(u32),
+}
+
+impl TreeNode {
+    fn child(&self, slot: usize) -> Child {
+        let meta = self.meta[slot];
+        if meta == 0 {
+            Child::Empty
+        } else if self.inner_mask & (1 << slot) != 0 {
+            let before = self.inner_mask & ((1u32 << slot) - 1) as u8;
+            Child::Inner(self.child_base + before.count_ones())
+        } else {
+            Child::Leaf(self.primitive_base + u32::from(meta & 31), (meta >> 5).count_ones())
+        }
+    }
+
+    fn children(&self) -> impl Iterator<Item = Child> + '_ {
+        (0..8).map(|slot| self.child(slot))
+    }
+}
+
+/// The shape of a hierarchy: node 0 is the root, children come after their parents.
+#[derive(Clone, Debug, Default)]
+pub struct Tree {
+    nodes: Vec<TreeNode>,
+    /// Which primitive stands at each place of the traversal order.
+    pub order: Vec<u32>,
+}
+
+impl Tree {
+    pub fn node_count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// A tree of good quality, of any depth. `boxes`: finite, at least one.
+    pub fn build(boxes: &[Bounds], leaf: u32) -> Self {
+        let boxes: Vec<Aabb> = boxes.iter().map(|b| Aabb::new(b.min.into(), b.max.into())).collect();
+        let preset = BvhBuildParams::medium_build();
+        // The steps of obvhs's `build_cwbvh` but for its debug validation, which panics on deep trees.
+        let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
+            preset.ploc_search_distance,
+            &boxes,
+            (0..boxes.len() as u32).collect(),
+            preset.sort_precision,
+            preset.search_depth_threshold,
+        );
+        ReinsertionOptimizer::default().run(&mut binary, preset.reinsertion_batch_ratio, None);
+        let wide = bvh2_to_cwbvh(&binary, leaf, true, false);
+        let nodes = wide
+            .nodes
+            .iter()
+            .map(|n| TreeNode {
+                child_base: n.child_base_idx,
+                primitive_base: n.primitive_base_idx,
+                inner_mask: n.imask,
+                meta: n.child_meta,
+            })
+            .collect();
+        Self { nodes, order: wide.primitive_indices }
+    }
+
+    /// A tree of the least depth: each node halves its largest part, by the median along its longest axis, until it
+    /// has eight.
+    pub fn median_split(boxes: &[Bounds], leaf: u32) -> Self {
+        let mut tree = Self { nodes: vec![TreeNode::default()], order: Vec::with_capacity(boxes.len()) };
+        let mut waiting = vec![(0usize, (0..boxes.len() as u32).collect::<Vec<u32>>())];
+        while let Some((index, primitives)) = waiting.pop() {
+            let mut parts = vec![primitives];
+            while parts.len() < 8 {
+                let largest = (0..parts.len()).max_by_key(|&i| parts[i].len()).unwrap_or(0);
+                if parts[largest].len() <= leaf as usize {
+                    break;
+                }
+                let half = halve(&mut parts[largest], boxes);
+                parts.push(half);
+            }
+            let slots = octant_slots(&parts, boxes);
+            let mut node = TreeNode {
+                child_base: tree.nodes.len() as u32,
+                primitive_base: tree.order.len() as u32,
+                ..TreeNode::default()
+            };
+            for slot in 0..8 {
+                let Some(part) = slots.iter().position(|&s| s == slot) else {
+                    continue;
+                };
+                let part = std::mem::take(&mut parts[part]);
+                if part.len() <= leaf as usize {
+                    let offset = tree.order.len() as u32 - node.primitive_base;
+                    node.meta[slot] = ((1u8 << part.len()) - 1) << 5 | offset as u8;
+                    tree.order.extend(part);
+                } else {
+                    node.inner_mask |= 1 << slot;
+                    node.meta[slot] = 0b0010_0000 | (24 + slot as u8);
+                    waiting.push((tree.nodes.len(), part));
+                    tree.nodes.push(TreeNode::default());
+                }
+            }
+            tree.nodes[index] = node;
+        }
+        tree
+    }
+
+    /// Entries of the traversal stack that the worst ray needs. `below`: what a primitive needs on top, by its place in
+    /// the order (0 for triangles, which are not walked).
+    ///
+    /// A child leaves one group behind if it has a sibling (some octant visits it first). Entering a primitive leaves
+    /// the node's inner children behind, if any, and its primitives at lower places, if any.
+    pub fn stack_depth(&self, below: impl Fn(u32) -> Option<u32>) -> u32 {
+        let mut need = vec![0u32; self.nodes.len()];
+        for (index, node) in self.nodes.iter().enumerate().rev() {
+            let siblings = u32::from(node.inner_mask.count_ones() > 1);
+            let inner = u32::from(node.inner_mask != 0);
+            let mut worst = 0;
+            for child in node.children() {
+                match child {
+                    Child::Empty => {}
+                    Child::Inner(child) => worst = worst.max(siblings + need[child as usize]),
+                    Child::Leaf(first, count) => {
+                        for place in first..first + count {
+                            if let Some(mesh) = below(place) {
+                                worst = worst.max(inner + u32::from(place > node.primitive_base) + mesh);
+                            }
+                        }
+                    }
+                }
+            }
+            need[index] = worst;
+        }
+        need.first().copied().unwrap_or(0)
+    }
+
+    /// The nodes as the traversal reads them. Every quantised child box contains the boxes of all primitives below it.
+    /// `node_base`, `primitive_base`: where the tree's nodes and its order begin in the scene's arrays.
+    pub fn pack(&self, boxes: &[Bounds], node_base: u32, primitive_base: u32) -> Vec<Node> {
+        let mut child_bounds = vec![[Bounds::EMPTY; 8]; self.nodes.len()];
+        let mut bounds = vec![Bounds::EMPTY; self.nodes.len()];
+        for (index, node) in self.nodes.iter().enumerate().rev() {
+            for (slot, child) in node.children().enumerate() {
+                let inside = match child {
+                    Child::Empty => continue,
+                    Child::Inner(child) => bounds[child as usize],
+                    Child::Leaf(first, count) => self.order[first as usize..(first + count) as usize]
+                        .iter()
+                        .fold(Bounds::EMPTY, |b, &p| b.union(boxes[p as usize])),
+                };
+                child_bounds[index][slot] = inside;
+                bounds[index] = bounds[index].union(inside);
+            }
+        }
+        let pack_one = |(index, node): (usize, &TreeNode)| {
+            pack_node(node, &bounds[index], &child_bounds[index], node_base, primitive_base)
+        };
+        self.nodes.iter().enumerate().map(pack_one).collect()
+    }
+}
+
+/// Takes the upper half, by the median of the centres along their longest axis, out of `part`.
+fn halve(part: &mut Vec<u32>, boxes: &[Bounds]) -> Vec<u32> {
+    let centre = |p: u32| boxes[p as usize].centre();
+    let (low, high) = part
+        .iter()
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(centre(p)), high.max(centre(p))));
+    let extent = high - low;
+    let axis = if extent.x >= extent.y && extent.x >= extent.z { 0 } else { 1 + usize::from(extent.z > extent.y) };
+    let middle = part.len() / 2;
+    part.select_nth_unstable_by(middle, |&a, &b| centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.cmp(&b)));
+    part.split_off(middle)
+}
+
+/// The slot of each part such that slot xor octant is a near-to-far order (Ylitie et al. 2017, section 3.2, greedily):
+/// bits 4, 2, 1 of a slot stand for the positive side in x, y, z.
+fn octant_slots(parts: &[Vec<u32>], boxes: &[Bounds]) -> Vec<usize> {
+    let bounds = |part: &Vec<u32>| part.iter().fold(Bounds::EMPTY, |b, &p| b.union(boxes[p as usize]));
+    let centres: Vec<DVec3> = parts.iter().map(|part| bounds(part).centre()).collect();
+    let middle = parts.iter().map(bounds).fold(Bounds::EMPTY, Bounds::union).centre();
+    let mut wishes = Vec::with_capacity(parts.len() * 8);
+    for (part, &centre) in centres.iter().enumerate() {
+        for slot in 0..8usize {
+            let sign = |bit: usize| if slot & bit != 0 { 1.0 } else { -1.0 };
+            let v = centre - middle;
+            wishes.push((sign(4) * v.x + sign(2) * v.y + sign(1) * v.z, part, slot));
+        }
+    }
+    wishes.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut slots = vec![usize::MAX; parts.len()];
+    for (_, part, slot) in wishes {
+        if slots[part] == usize::MAX && !slots.contains(&slot) {
+            slots[part] = slot;
+        }
+    }
+    slots
+}
+
+/// The raw exponent of the finest grid whose 255 steps span `extent`.
+fn grid_exponent(extent: f64) -> u32 {
+    let mut raw = EXPONENT_RANGE.0;
+    if extent > 0.0 {
+        // The exponent of extent / 256 is at most one too small.
+        raw = (((extent.to_bits() >> 52) as i32 - 1023) - 8 + 127).max(EXPONENT_RANGE.0);
+        while 255.0 * grid_step(raw as u32) < extent {
+            raw += 1;
+        }
+    }
+    debug_assert!(raw <= EXPONENT_RANGE.1, "extent {extent} of a node");
+    raw as u32
+}
+
+fn grid_step(raw: u32) -> f64 {
+    f64::from(f32::from_bits(raw << 23))
+}
+
+fn pack_node(node: &TreeNode, bounds: &Bounds, children: &[Bounds; 8], node_base: u32, primitive_base: u32) -> Node {
+    let origin = bounds.min;
+    let corner = origin.as_dvec3();
+    let extent = bounds.max.as_dvec3() - corner;
+    let raw = [grid_exponent(extent.x), grid_exponent(extent.y), grid_exponent(extent.z)];
+    let mut planes = [[[0u8; 8]; 2]; 3];
+    for (slot, child) in children.iter().enumerate() {
+        if child.min.x > child.max.x {
+            continue;
+        }
+        for axis in 0..3 {
+            let step = grid_step(raw[axis]);
+            let low = ((f64::from(child.min[axis]) - corner[axis]) / step).floor();
+            let high = ((f64::from(child.max[axis]) - corner[axis]) / step).ceil();
+            debug_assert!(low >= 0.0 && high <= 255.0, "child {low}..{high} of a node");
+            planes[axis][0][slot] = low as u8;
+            planes[axis][1][slot] = high as u8;
+        }
+    }
+    let words = |bytes: [u8; 8]| {
+        let [a, b, c, d, e, f, g, h] = bytes;
+        [u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h])]
+    };
+    Node {
+        origin,
+        exponents_imask: raw[0] | raw[1] << 8 | raw[2] << 16 | u32::from(node.inner_mask) << 24,
+        child_base: node_base + node.child_base,
+        primitive_base: primitive_base + node.primitive_base,
+        child_meta: words(node.meta),
+        min_x: words(planes[0][0]),
+        max_x: words(planes[0][1]),
+        min_y: words(planes[1][0]),
+        max_y: words(planes[1][1]),
+        min_z: words(planes[2][0]),
+        max_z: words(planes[2][1]),
+    }
+}

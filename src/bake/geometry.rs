@@ -1,0 +1,167 @@
+//! Meshes: faces, vertices, traversal triangles and their hierarchy.
+
+use super::bvh::{Bounds, MESH_LEAF, Tree};
+use crate::layout::{Face, Triangle, Vertex};
+use crate::scene::{MaterialId, Mesh};
+use glam::{DVec3, Vec3};
+
+/// Coordinates below this (2^-60 of the mesh's size) become 0, as the ray's do (`trace::ray`): no difference between the
+/// two then has so few bits that the survival of subnormals could matter.
+const DUST: f32 = 8.6736174e-19;
+
+/// One mesh, indices relative to its own arrays.
+#[derive(Clone, Debug, Default)]
+pub struct BakedMesh {
+    /// One for each triangle as written, dropped ones included.
+    pub faces: Vec<Face>,
+    pub vertices: Vec<Vertex>,
+    /// In traversal order.
+    pub triangles: Vec<Triangle>,
+    /// Boxes of the triangles that were kept, as the tree numbers them.
+    pub boxes: Vec<Bounds>,
+    /// What stands in `Triangle` for each of those.
+    kept: Vec<Triangle>,
+    pub tree: Tree,
+    pub bounds: Option<Bounds>,
+    /// Coordinates are stored divided by this power of two, so that the largest is in 1..2 and the strict arithmetic of
+    /// `trace` works far from overflow and underflow at any scale. Instances multiply it back, exactly.
+    pub unit: f64,
+    pub warning: Option<String>,
+}
+
+impl BakedMesh {
+    /// Whether a ray can hit anything of it.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// Entries of the traversal stack its worst ray needs.
+    pub fn stack_depth(&self) -> u32 {
+        self.tree.stack_depth(|_| None)
+    }
+
+    /// Replaces the hierarchy by the least deep one.
+    pub fn flatten_tree(&mut self) {
+        self.set_tree(Tree::median_split(&self.boxes, MESH_LEAF));
+    }
+
+    fn set_tree(&mut self, tree: Tree) {
+        self.triangles = tree.order.iter().map(|&i| self.kept[i as usize]).collect();
+        self.tree = tree;
+    }
+}
+
+/// The power of two that brings `largest` (> 0) into 1..2.
+fn unit_of(largest: f32) -> f64 {
+    let (_, exponent) = libm::frexp(f64::from(largest));
+    libm::ldexp(1.0, exponent - 1)
+}
+
+/// Bakes one mesh. `default_material`: of faces that name none. Triangles with corners that are not numbers or without
+/// area are dropped and counted in `warning`.
+pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId) -> BakedMesh {
+    let finite = |corners: &[u32; 3]| corners.iter().all(|&i| mesh.positions[i as usize].is_finite());
+    let used = mesh.triangles.iter().filter(|corners| finite(corners)).flatten();
+    let largest = used.fold(0.0f32, |largest, &i| largest.max(mesh.positions[i as usize].abs().max_element()));
+    let unit = if largest > 0.0 { unit_of(largest) } else { 1.0 };
+    let mut baked = BakedMesh { unit, ..BakedMesh::default() };
+    let positions: Vec<Vec3> = mesh.positions.iter().map(|&p| scaled(p, unit)).collect();
+    let mut builder = VertexBuilder::new(mesh, &positions);
+    let (mut not_finite, mut flat) = (0u64, 0u64);
+    for (primitive, &corners) in mesh.triangles.iter().enumerate() {
+        let [v0, v1, v2] = corners.map(|i| positions[i as usize]);
+        let normal = face_normal(v0, v1, v2);
+        let material = mesh.face_materials.get(primitive).copied().unwrap_or(default_material).0;
+        let [i0, i1, i2] = builder.face(corners, normal.unwrap_or(Vec3::Z));
+        baked.faces.push(Face { i0, i1, i2, material });
+        if !finite(&corners) {
+            not_finite += 1;
+        } else if normal.is_none() {
+            flat += 1;
+        } else {
+            baked.boxes.push(Bounds::EMPTY.with(v0).with(v1).with(v2));
+            baked.kept.push(Triangle { v0, v1, v2, primitive: primitive as u32, ..Triangle::default() });
+        }
+    }
+    baked.vertices = builder.vertices;
+    if not_finite + flat > 0 {
+        baked.warning = Some(format!(
+            "mesh \"{}\": dropped {not_finite} triangles with coordinates that are not finite and {flat} without area",
+            mesh.name
+        ));
+    }
+    if !baked.kept.is_empty() {
+        baked.bounds = Some(baked.boxes.iter().fold(Bounds::EMPTY, |b, &c| b.union(c)));
+        let tree = Tree::build(&baked.boxes, MESH_LEAF);
+        baked.set_tree(tree);
+    }
+    baked
+}
+
+/// A position in the mesh's unit; 0 where it is not finite (such triangles are dropped).
+fn scaled(p: Vec3, unit: f64) -> Vec3 {
+    let one = |x: f32| {
+        let y = (f64::from(x) / unit) as f32;
+        if y.is_finite() && y.abs() >= DUST { y } else { 0.0 }
+    };
+    Vec3::new(one(p.x), one(p.y), one(p.z))
+}
+
+/// The unit normal of the counter-clockwise side; none if the triangle has no area.
+fn face_normal(v0: Vec3, v1: Vec3, v2: Vec3) -> Option<Vec3> {
+    let (e1, e2) = ((v1.as_dvec3() - v0.as_dvec3()), (v2.as_dvec3() - v0.as_dvec3()));
+    unit(DVec3::new(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x))
+}
+
+/// `v` made unit; none if it has no direction.
+fn unit(v: DVec3) -> Option<Vec3> {
+    let length = libm::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    let n = v / length;
+    (length > 0.0 && n.is_finite()).then(|| n.as_vec3())
+}
+
+/// Vertices are shared where the mesh has a usable normal, and made per face where it has none.
+struct VertexBuilder<'a> {
+    mesh: &'a Mesh,
+    positions: &'a [Vec3],
+    /// Index of each vertex as written, once it is needed.
+    shared: Vec<Option<u32>>,
+    vertices: Vec<Vertex>,
+}
+
+impl<'a> VertexBuilder<'a> {
+    fn new(mesh: &'a Mesh, positions: &'a [Vec3]) -> Self {
+        Self { mesh, positions, shared: vec![None; positions.len()], vertices: Vec::new() }
+    }
+
+    fn face(&mut self, corners: [u32; 3], face_normal: Vec3) -> [u32; 3] {
+        corners.map(|corner| {
+            let normal = self.mesh.normals.get(corner as usize).and_then(|n| unit(n.as_dvec3()));
+            match (normal, self.shared[corner as usize]) {
+                (None, _) => self.push(corner, face_normal),
+                (Some(_), Some(index)) => index,
+                (Some(normal), None) => {
+                    let index = self.push(corner, normal);
+                    self.shared[corner as usize] = Some(index);
+                    index
+                }
+            }
+        })
+    }
+
+    /// More than 2^32 of them are refused when the scene is put together.
+    fn push(&mut self, corner: u32, normal: Vec3) -> u32 {
+        let at = corner as usize;
+        let uv = self.mesh.uvs.get(at).copied().filter(|uv| uv.is_finite()).unwrap_or_default();
+        let color = self.mesh.colors.get(at).copied().filter(|c| c.is_finite()).unwrap_or(Vec3::ONE);
+        self.vertices.push(Vertex {
+            position: self.positions[at],
+            u: uv.x,
+            normal,
+            v: uv.y,
+            color,
+            ..Vertex::default()
+        });
+        (self.vertices.len() - 1) as u32
+    }
+}

@@ -1,0 +1,172 @@
+//! Materials, lights and textures as the device reads them.
+
+use super::BakeError;
+use crate::layout::{
+    ATTENUATION_INVERSE_SQUARE, ATTENUATION_NONE, ATTENUATION_POLYNOMIAL, INVALID, LIGHT_DIRECTIONAL, LIGHT_POINT,
+    LIGHT_SPOT, Light, MAGNIFY_BILINEAR, MAGNIFY_NEAREST, MATERIAL_CONDUCTOR, MATERIAL_D_1982, MATERIAL_FILTERED,
+    MATERIAL_LAFORTUNE, MODEL_BLINN_PHONG, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_LAMBERT,
+    MODEL_MIRROR, MODEL_PHONG, Material, TEXEL_FLOAT, TEXEL_LINEAR8, TEXEL_SRGB8, Texture, WRAP_CLAMP, WRAP_MIRROR,
+    WRAP_REPEAT,
+};
+use crate::scene::{self, Attenuation, Fresnel, IntensityUnit, LightKind, Model, TextureData, Transparency, Wrap};
+use glam::{DVec3, Vec3};
+
+/// One material.
+pub fn bake_material(material: &scene::Material) -> Result<Material, BakeError> {
+    let mut baked = Material {
+        color: material.color,
+        specular_color: material.specular_color,
+        k_a: material.k_a,
+        k_d: material.k_d,
+        k_s: material.k_s,
+        k_r: material.k_r,
+        eta: Vec3::ONE,
+        color_texture: material.color_texture.map_or(INVALID, |id| id.0),
+        emission: material.emission,
+        ..Material::default()
+    };
+    match &material.model {
+        Model::Lambert => baked.model = MODEL_LAMBERT,
+        Model::Phong { exponent, lafortune } => {
+            baked.model = MODEL_PHONG;
+            baked.exponent = *exponent;
+            baked.flags |= if *lafortune { MATERIAL_LAFORTUNE } else { 0 };
+        }
+        Model::BlinnPhong { exponent } => {
+            baked.model = MODEL_BLINN_PHONG;
+            baked.exponent = *exponent;
+        }
+        Model::CookTorrance { lobes, fresnel, normalisation_1982 } => {
+            baked.model = MODEL_COOK_TORRANCE;
+            let (first, second) = match lobes[..] {
+                [first] => (first, scene::Lobe { m: first.m, weight: 0.0 }),
+                [first, second] => (first, second),
+                _ => {
+                    return Err(BakeError::Lobes { name: material.name.clone(), count: lobes.len() });
+                }
+            };
+            (baked.m0, baked.w0) = (first.m, first.weight);
+            (baked.m1, baked.w1) = (second.m, second.weight);
+            match *fresnel {
+                Fresnel::Dielectric { eta } => baked.eta = Vec3::splat(eta),
+                Fresnel::Conductor { eta, k } => {
+                    baked.eta = eta;
+                    baked.k = k;
+                    baked.flags |= MATERIAL_CONDUCTOR;
+                }
+            }
+            baked.flags |= if *normalisation_1982 { MATERIAL_D_1982 } else { 0 };
+        }
+        Model::Mirror => baked.model = MODEL_MIRROR,
+        Model::Dielectric { eta, absorption } => {
+            baked.model = MODEL_DIELECTRIC;
+            baked.eta = Vec3::splat(*eta);
+            baked.absorption = *absorption;
+        }
+        Model::Emissive => baked.model = MODEL_EMISSIVE,
+    }
+    match material.transparency {
+        None => {}
+        Some(Transparency::Interpolated { k_t }) => baked.k_t = k_t,
+        Some(Transparency::Filtered { k_t, color }) => {
+            baked.k_t = k_t;
+            baked.transmit_color = color;
+            baked.flags |= MATERIAL_FILTERED;
+        }
+    }
+    Ok(baked)
+}
+
+/// Whether a surface of this material casts a shadow: what it says, or else all but transparent panes do.
+pub fn casts_shadow(material: &scene::Material) -> bool {
+    let pane = match material.transparency {
+        Some(Transparency::Interpolated { k_t } | Transparency::Filtered { k_t, .. }) => k_t > 0.0,
+        None => false,
+    };
+    material.casts_shadow.unwrap_or(!pane)
+}
+
+/// `v` made unit in double precision; +z if it has no direction.
+pub fn unit(v: DVec3) -> Vec3 {
+    let length = libm::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    let n = v / length;
+    if n.is_finite() { n.as_vec3() } else { Vec3::Z }
+}
+
+/// One light. The lecture's intensities are radiometric ones divided by pi (DESIGN, section 5).
+pub fn bake_light(light: &scene::Light) -> Light {
+    let factor = match light.unit {
+        IntensityUnit::Lecture => std::f64::consts::PI,
+        IntensityUnit::Radiometric => 1.0,
+    };
+    let mut baked = Light {
+        intensity: (light.intensity.as_dvec3() * factor).as_vec3(),
+        casts_shadow: u32::from(light.casts_shadow),
+        ..Light::default()
+    };
+    match light.kind {
+        LightKind::Point { position } => {
+            baked.kind = LIGHT_POINT;
+            baked.position = position;
+        }
+        LightKind::Directional { direction } => {
+            baked.kind = LIGHT_DIRECTIONAL;
+            baked.direction = unit(direction.as_dvec3());
+        }
+        LightKind::Spot { position, direction, inner, outer, exponent } => {
+            baked.kind = LIGHT_SPOT;
+            baked.position = position;
+            baked.direction = unit(direction.as_dvec3());
+            baked.cos_inner = libm::cos(f64::from(inner)) as f32;
+            baked.cos_outer = libm::cos(f64::from(outer)) as f32;
+            baked.exponent = exponent;
+        }
+    }
+    match light.attenuation {
+        Attenuation::InverseSquare => baked.attenuation = ATTENUATION_INVERSE_SQUARE,
+        Attenuation::Polynomial { c1, c2, c3 } => {
+            baked.attenuation = ATTENUATION_POLYNOMIAL;
+            baked.c = Vec3::new(c1, c2, c3);
+        }
+        Attenuation::None => baked.attenuation = ATTENUATION_NONE,
+    }
+    baked
+}
+
+/// One texture; its words are appended to `texels`.
+pub fn bake_texture(texture: &scene::Texture, texels: &mut Vec<u32>) -> Texture {
+    let wrap = |wrap| match wrap {
+        Wrap::Repeat => WRAP_REPEAT,
+        Wrap::Clamp => WRAP_CLAMP,
+        Wrap::Mirror => WRAP_MIRROR,
+    };
+    let first_word = texels.len() as u32;
+    let format = match &texture.data {
+        TextureData::Srgb8(data) => {
+            texels.extend(data.iter().map(|&rgba| u32::from_le_bytes(rgba)));
+            TEXEL_SRGB8
+        }
+        TextureData::Linear8(data) => {
+            texels.extend(data.iter().map(|&rgba| u32::from_le_bytes(rgba)));
+            TEXEL_LINEAR8
+        }
+        TextureData::Float(data) => {
+            texels.extend(data.iter().flatten().map(|x| x.to_bits()));
+            TEXEL_FLOAT
+        }
+    };
+    Texture {
+        width: texture.width,
+        height: texture.height,
+        first_word,
+        format,
+        wrap_u: wrap(texture.wrap_u),
+        wrap_v: wrap(texture.wrap_v),
+        magnify: if texture.bilinear { MAGNIFY_BILINEAR } else { MAGNIFY_NEAREST },
+        scale_u: texture.scale[0],
+        scale_v: texture.scale[1],
+        offset_u: texture.offset[0],
+        offset_v: texture.offset[1],
+        ..Texture::default()
+    }
+}

@@ -1,0 +1,285 @@
+//! The whole scene: numbers its parts, shares what is the same, and fills in the header.
+
+use super::bvh::{Bounds, TOP_LEAF, Tree};
+use super::geometry::{BakedMesh, bake_mesh};
+use super::instance::{place, top_margin};
+use super::material::{bake_light, bake_material, bake_texture, casts_shadow, unit};
+use super::{BakeError, SceneData};
+use crate::layout::{
+    Camera, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH,
+    KIND_SPHERE, SAMPLER_INDEPENDENT, SAMPLER_SOBOL, SAMPLER_STRATIFIED, STACK_SIZE, SceneHeader,
+};
+use crate::scene::{self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene};
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+/// k of the film's fixed point (DESIGN, strict rule 8): 2^-22 of a film unit is the smallest step.
+const FILM_BITS: i32 = 22;
+/// A hierarchy that needs more entries than this is rebuilt when the scene does not fit the stack.
+const DEEP_PART: u32 = 12;
+
+/// Bakes a scene whose indices are valid (`scene::load` guarantees it).
+pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
+    let mut data = SceneData::default();
+    let default_material = bake_materials(scene, &mut data)?;
+    data.lights = scene.lights.iter().map(bake_light).collect();
+    for texture in &scene.textures {
+        data.textures.push(bake_texture(texture, &mut data.texels));
+    }
+    check_count("words of texels", data.texels.len())?;
+    let meshes = bake_meshes(scene, default_material);
+    data.header = header(scene)?;
+    let mut parts = place_objects(scene, &meshes, default_material, &mut data)?;
+    parts.meshes = meshes;
+    build_hierarchy(parts, &mut data)?;
+    data.header.instance_count = data.instances.len() as u32;
+    data.header.light_count = data.lights.len() as u32;
+    data.header.material_count = data.materials.len() as u32;
+    data.place_heap()?;
+    Ok(data)
+}
+
+fn check_count(what: &'static str, count: usize) -> Result<(), BakeError> {
+    // INVALID itself is no index.
+    if count as u64 >= u64::from(INVALID) { Err(BakeError::TooLarge { what, count: count as u64 }) } else { Ok(()) }
+}
+
+/// Bakes all materials, and one more where an object or face names none. Returns the id of that one.
+fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, BakeError> {
+    for material in &scene.materials {
+        data.materials.push(bake_material(material)?);
+    }
+    let nameless = |object: &Object| match object.geometry {
+        Geometry::Sphere => object.material.is_none(),
+        Geometry::Mesh(id) => object.material.is_none() && scene.meshes[id.0 as usize].face_materials.is_empty(),
+    };
+    let default = MaterialId(scene.materials.len() as u32);
+    if scene.objects.iter().any(nameless) {
+        data.materials.push(bake_material(&Material::grey("default"))?);
+    }
+    Ok(default)
+}
+
+/// Bakes each mesh that an object uses, once.
+fn bake_meshes(scene: &Scene, default_material: MaterialId) -> Vec<Option<BakedMesh>> {
+    let mut used = vec![false; scene.meshes.len()];
+    for object in &scene.objects {
+        if let Geometry::Mesh(id) = object.geometry {
+            used[id.0 as usize] = true;
+        }
+    }
+    let one = |(mesh, &used): (&Mesh, &bool)| used.then(|| bake_mesh(mesh, default_material));
+    scene.meshes.par_iter().zip(&used).map(one).collect()
+}
+
+/// What the two levels are built from.
+struct Parts {
+    meshes: Vec<Option<BakedMesh>>,
+    /// Mesh and world box of each instance.
+    shown: Vec<(Option<usize>, Bounds)>,
+    growth: f64,
+}
+
+/// Makes the instances, and the faces and vertices of the meshes they show.
+fn place_objects(
+    scene: &Scene,
+    meshes: &[Option<BakedMesh>],
+    default_material: MaterialId,
+    data: &mut SceneData,
+) -> Result<Parts, BakeError> {
+    let mut first_face = vec![0u32; meshes.len()];
+    for (id, mesh) in meshes.iter().enumerate() {
+        let Some(mesh) = mesh else { continue };
+        data.warnings.extend(mesh.warning.clone());
+        check_count("vertices", data.vertices.len() + mesh.vertices.len())?;
+        check_count("faces", data.faces.len() + mesh.faces.len())?;
+        first_face[id] = data.faces.len() as u32;
+        let base = data.vertices.len() as u32;
+        data.faces.extend(mesh.faces.iter().map(|&face| crate::layout::Face {
+            i0: base + face.i0,
+            i1: base + face.i1,
+            i2: base + face.i2,
+            material: face.material,
+        }));
+        data.vertices.extend_from_slice(&mesh.vertices);
+    }
+    let mut parts = Parts { meshes: Vec::new(), shown: Vec::new(), growth: 1.0 };
+    for (index, object) in scene.objects.iter().enumerate() {
+        let sphere = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+        let (mesh, unit, bounds) = match object.geometry {
+            Geometry::Sphere => (None, 1.0, sphere),
+            Geometry::Mesh(id) => match &meshes[id.0 as usize] {
+                Some(BakedMesh { bounds: Some(bounds), unit, .. }) => (Some(id.0 as usize), *unit, *bounds),
+                // Nothing of it can be hit.
+                _ => continue,
+            },
+        };
+        let placement = place(&object.name, &object.transform, unit, &bounds, mesh.is_none())?;
+        parts.growth = parts.growth.max(placement.growth);
+        parts.shown.push((mesh, placement.world));
+        let (shadowed, warning) = instance_shadow(scene, object);
+        data.warnings.extend(warning);
+        data.instances.push(Instance {
+            to_world: placement.to_world,
+            to_object: placement.to_object,
+            kind: if mesh.is_some() { KIND_MESH } else { KIND_SPHERE },
+            root: INVALID,
+            first_face: mesh.map_or(0, |id| first_face[id]),
+            material: match (object.material, mesh) {
+                (Some(id), _) => id.0,
+                (None, Some(_)) => INVALID,
+                (None, None) => default_material.0,
+            },
+            flags: (if shadowed { 0 } else { INSTANCE_NO_SHADOW })
+                | (if placement.mirrored { INSTANCE_MIRRORED } else { 0 }),
+            object: index as u32,
+            ..Instance::default()
+        });
+    }
+    check_count("instances", data.instances.len())?;
+    Ok(parts)
+}
+
+/// Whether an object casts shadows: what it says, else what its material says. Shadow rays know instances, not
+/// faces: a mesh of both kinds of faces casts with all of them, and says so.
+fn instance_shadow(scene: &Scene, object: &Object) -> (bool, Option<String>) {
+    let of = |id: MaterialId| casts_shadow(&scene.materials[id.0 as usize]);
+    if let Some(casts) = object.casts_shadow {
+        return (casts, None);
+    }
+    if let Some(id) = object.material {
+        return (of(id), None);
+    }
+    let Geometry::Mesh(id) = object.geometry else {
+        return (true, None);
+    };
+    let faces = &scene.meshes[id.0 as usize].face_materials;
+    let mut used = vec![false; scene.materials.len()];
+    faces.iter().for_each(|id| used[id.0 as usize] = true);
+    let answers: Vec<bool> = (0..used.len()).filter(|&i| used[i]).map(|i| of(MaterialId(i as u32))).collect();
+    let casts = answers.is_empty() || answers.contains(&true);
+    let mixed = casts && answers.contains(&false);
+    let warning = mixed.then(|| {
+        format!("object \"{}\": some of its materials cast no shadow and some do; all of it casts one", object.name)
+    });
+    (casts, warning)
+}
+
+/// Builds the top level and lays all hierarchies out in one array. Rebuilds what is too deep for the stack.
+fn build_hierarchy(mut parts: Parts, data: &mut SceneData) -> Result<(), BakeError> {
+    data.header.top_margin = top_margin(parts.growth);
+    data.header.top_root = INVALID;
+    if parts.shown.is_empty() {
+        return Ok(());
+    }
+    let boxes: Vec<Bounds> = parts.shown.iter().map(|&(_, world)| world).collect();
+    let mut top = Tree::build(&boxes, TOP_LEAF);
+    data.stack_depth = total_depth(&top, &parts);
+    if data.stack_depth > STACK_SIZE {
+        let deep = |mesh: &&mut BakedMesh| mesh.stack_depth() > DEEP_PART;
+        parts.meshes.iter_mut().flatten().filter(deep).for_each(BakedMesh::flatten_tree);
+        if top.stack_depth(|_| Some(0)) > DEEP_PART {
+            top = Tree::median_split(&boxes, TOP_LEAF);
+        }
+        data.stack_depth = total_depth(&top, &parts);
+        if data.stack_depth > STACK_SIZE {
+            return Err(BakeError::Deep(data.stack_depth));
+        }
+    }
+
+    let triangles = parts.meshes.iter().flatten().map(|mesh| mesh.triangles.len()).sum();
+    check_count("triangles", triangles)?;
+    let nodes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.node_count()).sum::<usize>() + top.node_count();
+    check_count("nodes", nodes)?;
+    data.nodes.reserve_exact(nodes);
+    data.triangles.reserve_exact(triangles);
+    data.header.top_root = 0;
+    data.nodes.extend(top.pack(&boxes, 0, 0));
+    data.top_instances = top.order.clone();
+    let mut roots = vec![INVALID; parts.meshes.len()];
+    for (id, mesh) in parts.meshes.iter().enumerate() {
+        let Some(mesh) = mesh.as_ref().filter(|mesh| !mesh.is_empty()) else {
+            continue;
+        };
+        roots[id] = data.nodes.len() as u32;
+        let packed = mesh.tree.pack(&mesh.boxes, data.nodes.len() as u32, data.triangles.len() as u32);
+        data.nodes.extend(packed);
+        data.triangles.extend_from_slice(&mesh.triangles);
+    }
+    for (instance, (mesh, _)) in data.instances.iter_mut().zip(&parts.shown) {
+        instance.root = mesh.map_or(INVALID, |id| roots[id]);
+    }
+    Ok(())
+}
+
+/// Entries of the stack that the worst ray needs, top level and mesh together.
+fn total_depth(top: &Tree, parts: &Parts) -> u32 {
+    let meshes: Vec<u32> = parts.meshes.iter().map(|mesh| mesh.as_ref().map_or(0, BakedMesh::stack_depth)).collect();
+    // A sphere is tested on the spot.
+    top.stack_depth(|place| parts.shown[top.order[place as usize] as usize].0.map(|mesh| meshes[mesh]))
+}
+
+/// All of the header that does not depend on the arrays.
+fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
+    let settings = &scene.settings;
+    let exponent = FILM_BITS - scene.film.unit_exponent;
+    if !(-100..=100).contains(&scene.film.unit_exponent) {
+        return Err(BakeError::FilmUnit(scene.film.unit_exponent));
+    }
+    Ok(SceneHeader {
+        camera: camera(&scene.camera, &scene.film)?,
+        ambient: scene.ambient,
+        integrator: match settings.integrator {
+            Integrator::Local => INTEGRATOR_LOCAL,
+            Integrator::Whitted => INTEGRATOR_WHITTED,
+        },
+        background_bottom: scene.background.bottom,
+        max_depth: settings.max_depth,
+        background_top: scene.background.top,
+        min_weight: settings.min_weight,
+        seed: settings.seed,
+        sampling: match settings.sampler {
+            Sampler::Sobol => SAMPLER_SOBOL,
+            Sampler::Stratified => SAMPLER_STRATIFIED,
+            Sampler::Independent => SAMPLER_INDEPENDENT,
+        },
+        strata: strata(settings.samples),
+        shadows: u32::from(settings.shadows),
+        film_scale: libm::ldexp(1.0, exponent) as f32,
+        ..SceneHeader::default()
+    })
+}
+
+/// Strata per axis: the largest square that `samples` fill.
+fn strata(samples: u32) -> u32 {
+    (libm::sqrt(f64::from(samples)) as u32).max(1)
+}
+
+/// The camera's record (`layout::Camera`) from where it stands.
+fn camera(camera: &scene::Camera, film: &Film) -> Result<Camera, BakeError> {
+    let cross = |a: DVec3, b: DVec3| DVec3::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+    let normalise = |v: DVec3| {
+        let length = libm::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+        (length > 0.0 && length.is_finite()).then(|| v / length)
+    };
+    let view = camera.target.as_dvec3() - camera.eye.as_dvec3();
+    let forward = normalise(view).ok_or(BakeError::Camera("looks at its own position"))?;
+    let right =
+        normalise(cross(forward, camera.up.as_dvec3())).ok_or(BakeError::Camera("looks along its up vector"))?;
+    let up = cross(right, forward);
+    let (kind, half_height) = match camera.projection {
+        Projection::Perspective { fov_y } => (crate::layout::CAMERA_PERSPECTIVE, libm::tan(f64::from(fov_y) * 0.5)),
+        Projection::Orthographic { height } => (crate::layout::CAMERA_ORTHOGRAPHIC, f64::from(height) * 0.5),
+    };
+    let half_width = half_height * f64::from(film.width) / f64::from(film.height);
+    Ok(Camera {
+        eye: camera.eye,
+        kind,
+        right: (right * half_width).as_vec3(),
+        scale_x: (2.0 / f64::from(film.width)) as f32,
+        up: (up * half_height).as_vec3(),
+        scale_y: (2.0 / f64::from(film.height)) as f32,
+        forward: unit(forward),
+        ..Camera::default()
+    })
+}

@@ -1,0 +1,139 @@
+//! Boxes: the strict interval that bounds every accepted hit, and the approximate node test that never loses one.
+//!
+//! The picture must not depend on the shape of the hierarchy, so boxes choose what is visited, never what is hit:
+//!
+//! * `box_interval` is strict. A primitive's hit counts only at a t inside the interval of the primitive's own box
+//!   (grown by `slack`, below), which holds for every honest hit and forbids those that rounding invents far from a
+//!   triangle seen edge-on.
+//! * `approx_intersect_node` may round differently on every device, so its boxes are widened by more than all the
+//!   rounding between the two. Whatever is accepted lies in a box that is visited.
+//!
+//! # The bound
+//!
+//! u = 2^-24; d the direction; o the origin; for a box, m = max |corner - o| per axis; S = |d| / |d.kz| <= 1.
+//!
+//! 1. Triangle. A corner's sheared coordinate is fl(fl(v - o) - fl(S fl(v - o).kz)): off by at most u (2 S m.kz + m).
+//!    The sign of an edge function is never wrong, because rounding is monotone (it may become 0), so the triangle
+//!    that contains the ray in computed coordinates is accepted. Its point above the ray is the corners' weighted mean:
+//!    inside the box, and off the ray per axis by that error. S is fl(d rcp(d.kz)) and the slabs use rcp(d), each
+//!    within 2.3 u: 3.3 u S m.kz more; the slab's subtraction and product: 2 u m. Sum: u (5.3 S m.kz + 3 m).
+//! 2. Sphere. The closest point to the centre is off by u (m + 16 S m.kz) (`sphere`).
+//! 3. So slack = 16 u (m + S m.kz) covers both.
+//! 4. Node, same level. Its planes contain the box (bake proves it in f64). With M = max over axes of
+//!    |p - o| + 255 step >= m, slack is at most 32 u M, its rounding and the slab's 4 u M, the node's own (two
+//!    differences, two products, one sum) 6 u M: 64 u M = 2^-18 M is enough: `MESH_MARGIN`.
+//! 5. Node of the top level. An object-space hit is off in object space by the transform's rounding,
+//!    8 u (|O||o| + |O.w|) for the origin and direction and 8 u |O||x - o| for to_object being rounded itself, and by slack
+//!    in object space, 16 u (2 |O||x - o| + extents). In world units, with kappa = the largest row sum of |W||O|:
+//!    relative 48 kappa u M + 6 u M, so `top_margin` = 128 kappa u; and an absolute part that bake adds to the box.
+
+use super::ray::LevelRay;
+use crate::layout::Node;
+use crate::shading::math::{max_, min_};
+use glam::{Vec2, Vec3, Vec4};
+
+/// 16 u: see the bound, step 3.
+const SLACK: f32 = 9.536743e-7;
+/// 64 u: see the bound, step 4.
+pub const MESH_MARGIN: f32 = 3.8146973e-6;
+
+/// The t at which the ray enters and leaves a box, in (near, far) order; near > far: it does not meet it.
+/// `low`, `high`: corners minus the ray's origin. The box is grown by `SLACK` first.
+#[inline(always)]
+pub fn box_interval(ray: &LevelRay, low: Vec3, high: Vec3) -> Vec2 {
+    let mx = max_(low.x.abs(), high.x.abs());
+    let my = max_(low.y.abs(), high.y.abs());
+    let mz = max_(low.z.abs(), high.z.abs());
+    let depth = if ray.kz == 0 {
+        mx
+    } else if ray.kz == 1 {
+        my
+    } else {
+        mz
+    };
+    let travel = depth * ray.sz.abs();
+    let ex = (mx + ray.direction.x.abs() * travel) * SLACK;
+    let ey = (my + ray.direction.y.abs() * travel) * SLACK;
+    let ez = (mz + ray.direction.z.abs() * travel) * SLACK;
+    let x0 = (low.x - ex) * ray.inverse.x;
+    let x1 = (high.x + ex) * ray.inverse.x;
+    let y0 = (low.y - ey) * ray.inverse.y;
+    let y1 = (high.y + ey) * ray.inverse.y;
+    let z0 = (low.z - ez) * ray.inverse.z;
+    let z1 = (high.z + ez) * ray.inverse.z;
+    let near = max_(max_(min_(x0, x1), min_(y0, y1)), min_(z0, z1));
+    let far = min_(min_(max_(x0, x1), max_(y0, y1)), max_(z0, z1));
+    Vec2::new(near, far)
+}
+
+/// Four quantised planes of one word, child 0 in the lowest byte.
+#[inline(always)]
+fn approx_planes(word: u32) -> Vec4 {
+    Vec4::new((word & 255) as f32, ((word >> 8) & 255) as f32, ((word >> 16) & 255) as f32, (word >> 24) as f32)
+}
+
+/// The bits that four children set if the ray meets their boxes. `meta`: their bytes of `child_meta`;
+/// `near`, `far`: their intervals. Inner children set the bit of their priority in the top byte (Ylitie et al. 2017,
+/// section 3.3: slot xor octant), leaves one bit a primitive in the lower 24.
+#[inline(always)]
+fn approx_hit_bits(meta: u32, octant: u32, near: Vec4, far: Vec4) -> u32 {
+    let is_inner = (meta & (meta << 1)) & 0x1010_1010;
+    let inner_mask = (is_inner >> 4) * 255;
+    let bit_index = (meta ^ (octant & inner_mask)) & 0x1f1f_1f1f;
+    let child_bits = (meta >> 5) & 0x0707_0707;
+    let mut hits = 0;
+    // Written as "unless it misses": a NaN would be visited.
+    if !(near.x > far.x) {
+        hits |= (child_bits & 255) << (bit_index & 31);
+    }
+    if !(near.y > far.y) {
+        hits |= ((child_bits >> 8) & 255) << ((bit_index >> 8) & 31);
+    }
+    if !(near.z > far.z) {
+        hits |= ((child_bits >> 16) & 255) << ((bit_index >> 16) & 31);
+    }
+    if !(near.w > far.w) {
+        hits |= (child_bits >> 24) << ((bit_index >> 24) & 31);
+    }
+    hits
+}
+
+/// Which of a node's eight children the ray may meet at a t from 0 to `t_max` (both included), as the bits of
+/// `approx_hit_bits`. `margin`: relative widening, `MESH_MARGIN` or the header's `top_margin`.
+/// Source: Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
+/// section 3; the widening is ours (the bound above).
+#[inline(always)]
+pub fn approx_intersect_node(node: &Node, ray: &LevelRay, margin: f32, t_max: f32) -> u32 {
+    let exponents = node.exponents_imask;
+    let step = Vec3::new(
+        f32::from_bits((exponents & 255) << 23),
+        f32::from_bits(((exponents >> 8) & 255) << 23),
+        f32::from_bits(((exponents >> 16) & 255) << 23),
+    );
+    let corner = node.origin - ray.origin;
+    let extent = corner.abs() + step * 255.0;
+    let error = ray.inverse.abs() * (extent.x.max(extent.y).max(extent.z) * margin);
+    let scale = step * ray.inverse;
+    let start = corner * ray.inverse;
+    let low = start - error;
+    let high = start + error;
+
+    // Near and far planes by the sign of the direction; no swapping per child.
+    let (near_x, far_x) = if ray.inverse.x < 0.0 { (node.max_x, node.min_x) } else { (node.min_x, node.max_x) };
+    let (near_y, far_y) = if ray.inverse.y < 0.0 { (node.max_y, node.min_y) } else { (node.min_y, node.max_y) };
+    let (near_z, far_z) = if ray.inverse.z < 0.0 { (node.max_z, node.min_z) } else { (node.min_z, node.max_z) };
+
+    let mut hits = 0;
+    for half in 0..2 {
+        let near = (approx_planes(near_x[half]) * scale.x + low.x)
+            .max(approx_planes(near_y[half]) * scale.y + low.y)
+            .max(approx_planes(near_z[half]) * scale.z + low.z)
+            .max(Vec4::ZERO);
+        let far = (approx_planes(far_x[half]) * scale.x + high.x)
+            .min(approx_planes(far_y[half]) * scale.y + high.y)
+            .min(approx_planes(far_z[half]) * scale.z + high.z)
+            .min(Vec4::splat(t_max));
+        hits |= approx_hit_bits(node.child_meta[half], ray.octant, near, far);
+    }
+    hits
+}
