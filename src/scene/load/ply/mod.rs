@@ -26,7 +26,7 @@ enum Place {
 /// Edges sharper than this stay sharp where a file has no normals, radians (40 degrees).
 const CREASE: f64 = 0.698;
 
-/// Loads the file as a scene: the mesh, smooth where it has no normals of its own, in the house's grey, staged.
+/// Loads the file as a scene: the mesh, smooth where it has no normals of its own, in the house's grey. `load::load` stages it.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
     let mut mesh = read_mesh(path)?;
     if mesh.normals.is_empty() {
@@ -42,7 +42,6 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         casts_shadow: None,
     });
     scene.meshes.push(mesh);
-    staging::stage(&mut scene);
     Ok(scene)
 }
 
