@@ -1,5 +1,7 @@
 mod bounds;
+pub mod gltf;
 pub mod image;
+mod meter;
 pub mod ply;
 mod polygon;
 pub mod staging;
