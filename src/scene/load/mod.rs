@@ -1,7 +1,9 @@
 //! Scene files: one file or folder per format.
 
 mod bounds;
+pub mod gltf;
 pub mod image;
+mod meter;
 pub mod obj;
 pub mod ply;
 mod polygon;
