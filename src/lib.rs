@@ -9,6 +9,11 @@ pub mod film;
 pub mod layout;
 pub mod render;
 pub mod scene;
+pub mod shaders;
+#[cfg_attr(not(test), deny(clippy::disallowed_methods, clippy::disallowed_types))]
 pub mod shading;
+#[cfg_attr(not(test), deny(clippy::disallowed_methods, clippy::disallowed_types))]
 pub mod trace;
+#[cfg_attr(not(test), deny(clippy::disallowed_methods, clippy::disallowed_types))]
 pub mod transport;
+pub mod verify;

@@ -11,6 +11,7 @@
 #include "layout/header.glsl"
 
 layout(local_size_x_id = 0, local_size_y = 1, local_size_z = 1) in;
+layout(constant_id = 0) const uint GROUP_SIZE = 64u;
 layout(constant_id = 1) const uint NODE_PAGES = 1u;
 layout(constant_id = 2) const uint TRIANGLE_PAGES = 1u;
 layout(constant_id = 3) const uint DATA_PAGES = 1u;

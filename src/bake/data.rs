@@ -58,6 +58,43 @@ impl SceneData {
         }
     }
 
+    /// BLAKE3 of everything that reaches a sample. The shape of the BVH, the order of its triangles and where arrays
+    /// lie in the heap do not, and are left out; so is nothing else.
+    pub fn digest(&self) -> [u8; 32] {
+        let mut header = self.header;
+        header.top_root = 0;
+        let first = [
+            &mut header.first_instance,
+            &mut header.first_top_instance,
+            &mut header.first_face,
+            &mut header.first_vertex,
+            &mut header.first_material,
+            &mut header.first_light,
+            &mut header.first_texture,
+            &mut header.first_texel,
+            &mut header.first_table,
+        ];
+        first.into_iter().for_each(|offset| *offset = 0);
+        let instances: Vec<Instance> = self.instances.iter().map(|instance| Instance { root: 0, ..*instance }).collect();
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(b"gonio scene 1");
+        for bytes in [
+            bytemuck::bytes_of(&header),
+            bytemuck::cast_slice(&instances),
+            bytemuck::cast_slice(&self.faces),
+            bytemuck::cast_slice(&self.vertices),
+            bytemuck::cast_slice(&self.materials),
+            bytemuck::cast_slice(&self.lights),
+            bytemuck::cast_slice(&self.textures),
+            bytemuck::cast_slice(&self.texels),
+            bytemuck::cast_slice(&self.tables),
+        ] {
+            hasher.update(&(bytes.len() as u64).to_le_bytes());
+            hasher.update(bytes);
+        }
+        *hasher.finalize().as_bytes()
+    }
+
     /// The data heap: all arrays but nodes and triangles, one after the other, each from a whole 16-byte word on. Four
     /// top-level instances, texels or table entries share a word. `first_*` of the header are these `first_word`s.
     pub fn heap_pieces(&self) -> [HeapPiece<'_>; 9] {

@@ -10,6 +10,7 @@ mod geometry;
 mod instance;
 mod material;
 mod scene;
+pub mod srgb;
 
 pub use data::{HeapPiece, SceneData};
 pub use scene::bake;

@@ -1,1 +1,147 @@
+//! The command line: one file per subcommand. The only folder that prints.
 
+pub mod compare;
+pub mod devices;
+mod interrupt;
+pub mod merge;
+mod output;
+pub mod parity;
+mod progress;
+pub mod render;
+mod setup;
+
+use clap::{Parser, Subcommand};
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// Exit codes (README, "Exit codes").
+pub const EXIT_DIFFERS: u8 = 1;
+pub const EXIT_USAGE: u8 = 2;
+pub const EXIT_BAD_INPUT: u8 = 65;
+pub const EXIT_NO_DEVICE: u8 = 69;
+pub const EXIT_IO: u8 = 74;
+pub const EXIT_DEVICE: u8 = 75;
+pub const EXIT_INTERRUPTED: u8 = 130;
+
+/// A ray tracer in Rust and Vulkan compute. The same scene, seed and sample count give the same bits on every device.
+#[derive(Parser)]
+#[command(name = "gonio", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Say more on stderr (twice: everything).
+    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    verbose: u8,
+    /// Say nothing on stderr but errors.
+    #[arg(short, long, global = true)]
+    quiet: bool,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Make a picture of a scene.
+    Render(render::RenderArgs),
+    /// Add films of the same scene with different samples.
+    Merge(merge::MergeArgs),
+    /// Render the same samples on two backends and compare every bit.
+    Parity(parity::ParityArgs),
+    /// Compare two pictures: ULP, MSE, FLIP.
+    Compare(compare::CompareArgs),
+    /// List what can be used, and why the rest cannot.
+    Devices(devices::DevicesArgs),
+    /// Print a completion script for a shell.
+    Completions {
+        /// bash, zsh, fish, elvish or powershell.
+        shell: clap_complete::Shell,
+    },
+}
+
+/// Parses the command line and runs the subcommand.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let level = match (cli.quiet, cli.verbose) {
+        (true, _) => log::LevelFilter::Error,
+        (_, 0) => log::LevelFilter::Warn,
+        (_, 1) => log::LevelFilter::Info,
+        _ => log::LevelFilter::Debug,
+    };
+    env_logger::Builder::new()
+        .filter_level(log::LevelFilter::Warn)
+        .filter_module("gonio", level)
+        .parse_default_env()
+        .format(|out, record| match record.level() {
+            log::Level::Info => writeln!(out, "{}", record.args()),
+            level => writeln!(out, "{}: {}", level.as_str().to_lowercase(), record.args()),
+        })
+        .init();
+    let result = match &cli.command {
+        Command::Render(args) => render::run(args, cli.quiet),
+        Command::Merge(args) => merge::run(args),
+        Command::Parity(args) => parity::run(args, cli.quiet),
+        Command::Compare(args) => compare::run(args),
+        Command::Devices(args) => devices::run(args),
+        Command::Completions { shell } => {
+            clap_complete::generate(*shell, &mut <Cli as clap::CommandFactory>::command(), "gonio", &mut io::stdout());
+            Ok(ExitCode::SUCCESS)
+        }
+    };
+    result.unwrap_or_else(|error| {
+        // A reader that has gone away (`gonio devices | head -1`) is no error worth a word.
+        if is_broken_pipe(&error) {
+            return ExitCode::SUCCESS;
+        }
+        eprintln!("error: {}", message(&error));
+        ExitCode::from(exit_code(&error))
+    })
+}
+
+/// The error and its causes on one line, but for causes that it already tells.
+fn message(error: &anyhow::Error) -> String {
+    error.chain().map(ToString::to_string).fold(String::new(), |text, cause| match text.as_str() {
+        "" => cause,
+        told if told.contains(&cause) => text,
+        _ => format!("{text}: {cause}"),
+    })
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe))
+}
+
+/// A command line that parses but asks for what does not exist: exit code 2.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct Usage(pub String);
+
+/// The documented exit code of an error.
+fn exit_code(error: &anyhow::Error) -> u8 {
+    use crate::{bake::BakeError, film::FilmError, film::MergeError, render::RenderError, scene::SceneError};
+    for cause in error.chain() {
+        if cause.is::<Usage>() {
+            return EXIT_USAGE;
+        }
+        if let Some(error) = cause.downcast_ref::<SceneError>() {
+            return match error {
+                SceneError::Bad { .. } => EXIT_BAD_INPUT,
+                SceneError::Io { .. } => EXIT_IO,
+            };
+        }
+        if let Some(error) = cause.downcast_ref::<RenderError>() {
+            return match error {
+                RenderError::NoDevice(_) => EXIT_NO_DEVICE,
+                RenderError::Device(_) => EXIT_DEVICE,
+                RenderError::Aborted => EXIT_INTERRUPTED,
+            };
+        }
+        if let Some(error) = cause.downcast_ref::<FilmError>() {
+            return error.exit_code();
+        }
+        if cause.is::<BakeError>() || cause.is::<MergeError>() {
+            return EXIT_BAD_INPUT;
+        }
+        if cause.is::<io::Error>() {
+            return EXIT_IO;
+        }
+    }
+    EXIT_DEVICE
+}

@@ -29,6 +29,17 @@ pub struct Counters {
     pub other_s: f64,
 }
 
+impl std::ops::AddAssign for Counters {
+    fn add_assign(&mut self, other: Self) {
+        self.closest_rays += other.closest_rays;
+        self.shadow_rays += other.shadow_rays;
+        self.extend_s += other.extend_s;
+        self.shade_s += other.shade_s;
+        self.shadow_s += other.shadow_s;
+        self.other_s += other.other_s;
+    }
+}
+
 /// One step of one sample, for `--pixel` and for parity's report.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounce {

@@ -15,10 +15,21 @@
 //! * `roughness` is what users write; `alpha`/`m` is what distributions take.
 //! * `Spectrum` is `vec4`/`Vec4`: lanes 0-2 are linear Rec. 709 in RGB mode, lane 3 is 0.
 
+pub mod blinn_phong;
 pub mod camera;
+pub mod cook_torrance;
+pub mod dielectric;
 pub mod filter;
 pub mod frame;
+pub mod fresnel;
+pub mod lambert;
+pub mod light;
+pub mod lobe;
+pub mod material;
 pub mod math;
+pub mod microfacet;
+pub mod phong;
 pub mod sampling;
 pub mod spectrum;
+pub mod texture;
 pub mod warp;

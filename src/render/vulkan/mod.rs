@@ -1,1 +1,33 @@
 //! The Vulkan backend: the only folder with `unsafe`.
+//!
+//! Bottom up: `instance` and `device` (what is there), `context` (a device in use: submissions, transfers), `memory`
+//! (buffers), `reflect` and `kernel` (pipelines), `record` (commands); on these `scene` (pages), `plan` and `pace` (sizes),
+//! `queues` (the wavefront), `renderer` and `inspect`.
+
+mod context;
+mod device;
+mod error;
+mod inspect;
+mod instance;
+mod kernel;
+mod memory;
+mod pace;
+mod plan;
+mod queues;
+mod record;
+mod reflect;
+mod renderer;
+mod scene;
+mod validation;
+
+pub use context::{BufferSpec, Context, Device, Submission};
+pub use device::{DeviceChoice, DeviceInfo, DeviceKind, Limits, float_control_names};
+pub use error::VulkanError;
+pub use instance::Instance;
+pub use kernel::{Bound, Kernel, WORKGROUP};
+pub use memory::{Buffer, Place};
+pub use record::Recorder;
+pub use reflect::{Binding, BindingKind, bindings};
+pub use renderer::{VulkanOptions, VulkanRenderer};
+pub use scene::{FetchChoice, SceneBuffers};
+pub use validation::Messages;

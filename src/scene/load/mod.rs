@@ -1,1 +1,51 @@
+//! Scene files: one file or folder per format.
 
+mod bounds;
+pub mod image;
+pub mod obj;
+pub mod ply;
+mod polygon;
+pub mod staging;
+mod text;
+pub mod toml;
+
+pub use self::toml::Override;
+
+use crate::scene::{Location, Scene, SceneError};
+use std::io::Read;
+use std::path::Path;
+
+/// Loads the scene in `path`, its format told by the extension: `.toml`, `.obj`, `.gltf`, `.glb`, `.ply`; `-` is TOML on
+/// standard input. What the scene lacks to be a picture (a mesh has no camera) is staged.
+pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
+    if path == Path::new("-") {
+        let name = Path::new("<stdin>");
+        let mut bytes = Vec::new();
+        let read = std::io::stdin().lock().read_to_end(&mut bytes);
+        read.map_err(|source| SceneError::Io { location: Location::file(name), source })?;
+        return toml::scene_from_text(name, text::utf8(name, bytes)?, overrides);
+    }
+    if extension(path) == "toml" {
+        return toml::scene_from_text(path, text::utf8(path, text::read_bytes(path)?)?, overrides);
+    }
+    let mut scene = load_file(path)?;
+    toml::override_settings(&mut scene, overrides)?;
+    Ok(scene)
+}
+
+/// Loads a scene of a format that is not ours, staged.
+fn load_file(path: &Path) -> Result<Scene, SceneError> {
+    match extension(path).as_str() {
+        "obj" => obj::load(path),
+        "ply" => ply::load(path),
+        found => {
+            let found = if found.is_empty() { "no extension".to_owned() } else { format!(".{found}") };
+            let message = format!("scene files are .toml, .obj, .gltf, .glb or .ply, found {found}");
+            Err(SceneError::bad(Location::file(path), message))
+        }
+    }
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
+}

@@ -1,0 +1,161 @@
+// Proves that both sides see the same bytes: every record of `layout/` is read and written, every constant returned.
+//
+// tests/layout.rs reflects the SPIR-V of this kernel (names, types, offsets, strides, constants), which needs no device.
+//
+// On a device, one dispatch checks one record. Set 0 (several blocks share each binding: one per record):
+// * binding 0: a SceneHeader (256 bytes), then the records to read, back to back.
+//   `header.first_*` of the record must be FIRST_WORD; give the others 0xffffff so that a mix-up is seen.
+// * binding 1: the same records as they were read, from byte 0 on; or the constants, one u32 each.
+// * push constants: `record` (its number in `main`, or RECORD_COUNT for the constants), `count` (records to read).
+// One invocation a record. What binding 1 holds must be what was given from byte 256 on: words 0, 1, 2, ... show
+// where a misplaced member came from.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+layout(local_size_x_id = 0, local_size_y = 1, local_size_z = 1) in;
+layout(push_constant, scalar) uniform Choice { uint record; uint count; };
+
+const uint RECORD_COUNT = 19u;
+const uint FIRST_WORD = 16u;
+layout(set = 0, binding = 0, scalar) readonly buffer Heap { uvec4 heap[]; };
+
+// What kernels/bindings.glsl declares, over one heap: `load_*` reads it word by word.
+#define GONIO_FETCH
+#include "layout/header.glsl"
+layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };
+uvec4 fetch_data(uint at) { return heap[at]; }
+uvec4 fetch_node(uint at) { return heap[FIRST_WORD + at]; }
+uvec4 fetch_triangle(uint at) { return heap[FIRST_WORD + at]; }
+uvec4 fetch_path(uint at) { return heap[FIRST_WORD + at]; }
+uvec4 fetch_hit(uint at) { return heap[FIRST_WORD + at]; }
+uvec4 fetch_shadow(uint at) { return heap[FIRST_WORD + at]; }
+#include "layout/mod.glsl"
+
+// Records without a `load_*` are read as kernels read them: through a block.
+#define IN(Record, name)                                                       \
+    layout(set = 0, binding = 0, scalar) readonly buffer Record##In {          \
+        uvec4 name##_skip[FIRST_WORD];                                         \
+        Record name##_in[];                                                    \
+    }
+IN(Camera, camera);
+IN(SceneHeader, scene_header);
+IN(Batch, batch);
+IN(FilmSum, film_sum);
+IN(AovPixel, aov_pixel);
+IN(Ray, ray);
+IN(DispatchArguments, dispatch_arguments);
+IN(Control, control);
+
+#define OUT(Record, name)                                                      \
+    layout(set = 0, binding = 1, scalar) writeonly buffer Record##Out { Record name##_out[]; }
+OUT(Node, node);
+OUT(Triangle, triangle);
+OUT(Instance, instance);
+OUT(Face, face);
+OUT(Vertex, vertex);
+OUT(Material, material);
+OUT(Light, light);
+OUT(Texture, texture);
+OUT(Hit, hit);
+OUT(PathState, path_state);
+OUT(ShadowRay, shadow_ray);
+OUT(Camera, camera);
+OUT(SceneHeader, scene_header);
+OUT(Batch, batch);
+OUT(FilmSum, film_sum);
+OUT(AovPixel, aov_pixel);
+OUT(Ray, ray);
+OUT(DispatchArguments, dispatch_arguments);
+OUT(Control, control);
+layout(set = 0, binding = 1, scalar) writeonly buffer ConstantsOut { uint constants[]; };
+
+// Every constant of layout/*.glsl; floats by their bits. A new one is appended here (tests/layout.rs asks for it).
+void store_constants() {
+    constants[0] = INVALID;
+    constants[1] = CAMERA_PERSPECTIVE;
+    constants[2] = CAMERA_ORTHOGRAPHIC;
+    constants[3] = MAX_LEVELS;
+    constants[4] = NODE_WORDS;
+    constants[5] = TRIANGLE_WORDS;
+    constants[6] = KIND_MESH;
+    constants[7] = KIND_SPHERE;
+    constants[8] = INSTANCE_NO_SHADOW;
+    constants[9] = INSTANCE_MIRRORED;
+    constants[10] = INSTANCE_WORDS;
+    constants[11] = FACE_WORDS;
+    constants[12] = VERTEX_WORDS;
+    constants[13] = INTEGRATOR_LOCAL;
+    constants[14] = INTEGRATOR_WHITTED;
+    constants[15] = SAMPLER_SOBOL;
+    constants[16] = SAMPLER_STRATIFIED;
+    constants[17] = SAMPLER_INDEPENDENT;
+    constants[18] = FILTER_BOX;
+    constants[19] = FILTER_TENT;
+    constants[20] = FILTER_TABLE;
+    constants[21] = FILTER_KNOTS;
+    constants[22] = LIGHT_POINT;
+    constants[23] = LIGHT_DIRECTIONAL;
+    constants[24] = LIGHT_SPOT;
+    constants[25] = ATTENUATION_INVERSE_SQUARE;
+    constants[26] = ATTENUATION_POLYNOMIAL;
+    constants[27] = ATTENUATION_NONE;
+    constants[28] = LIGHT_WORDS;
+    constants[29] = MODEL_LAMBERT;
+    constants[30] = MODEL_PHONG;
+    constants[31] = MODEL_BLINN_PHONG;
+    constants[32] = MODEL_COOK_TORRANCE;
+    constants[33] = MODEL_MIRROR;
+    constants[34] = MODEL_DIELECTRIC;
+    constants[35] = MODEL_EMISSIVE;
+    constants[36] = MATERIAL_FILTERED;
+    constants[37] = MATERIAL_CONDUCTOR;
+    constants[38] = MATERIAL_LAFORTUNE;
+    constants[39] = MATERIAL_D_1982;
+    constants[40] = MATERIAL_ONE_SIDED;
+    constants[41] = MATERIAL_WORDS;
+    constants[42] = floatBitsToUint(T_INFINITE);
+    constants[43] = HIT_WORDS;
+    constants[44] = PATH_STATE_WORDS;
+    constants[45] = SHADOW_RAY_WORDS;
+    constants[46] = TEXEL_SRGB8;
+    constants[47] = TEXEL_LINEAR8;
+    constants[48] = TEXEL_FLOAT;
+    constants[49] = WRAP_REPEAT;
+    constants[50] = WRAP_CLAMP;
+    constants[51] = WRAP_MIRROR;
+    constants[52] = MAGNIFY_NEAREST;
+    constants[53] = MAGNIFY_BILINEAR;
+    constants[54] = TEXTURE_WORDS;
+    constants[55] = STACK_SIZE;
+}
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (record == RECORD_COUNT) {
+        if (i == 0u) store_constants();
+        return;
+    }
+    if (i >= count) return;
+    switch (record) {
+    case 0u: node_out[i] = load_node(i); break;
+    case 1u: triangle_out[i] = load_triangle(i); break;
+    case 2u: instance_out[i] = load_instance(i); break;
+    case 3u: face_out[i] = load_face(i); break;
+    case 4u: vertex_out[i] = load_vertex(i); break;
+    case 5u: material_out[i] = load_material(i); break;
+    case 6u: light_out[i] = load_light(i); break;
+    case 7u: texture_out[i] = load_texture(i); break;
+    case 8u: hit_out[i] = load_hit(i); break;
+    case 9u: path_state_out[i] = load_path_state(i); break;
+    case 10u: shadow_ray_out[i] = load_shadow_ray(i); break;
+    case 11u: camera_out[i] = camera_in[i]; break;
+    case 12u: scene_header_out[i] = scene_header_in[i]; break;
+    case 13u: batch_out[i] = batch_in[i]; break;
+    case 14u: film_sum_out[i] = film_sum_in[i]; break;
+    case 15u: aov_pixel_out[i] = aov_pixel_in[i]; break;
+    case 16u: ray_out[i] = ray_in[i]; break;
+    case 17u: dispatch_arguments_out[i] = dispatch_arguments_in[i]; break;
+    case 18u: control_out[i] = control_in[i]; break;
+    }
+}

@@ -1,0 +1,55 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Twins of the reflection models; numbers as in `src/verify/twins/models.rs`: 3 * MODEL_* + {eval and pdf, sample, rest}.
+#include "kernels/parity/harness.glsl"
+#include "layout/mod.glsl"
+#include "shading/material.glsl"
+
+Material material(uint model) {
+    Material m;
+    m.color = vec3(0.75, 0.5, 0.1);
+    m.model = model;
+    m.specular_color = vec3(1.0, 0.9, 0.8);
+    m.exponent = argument(6u);
+    m.k_a = 0.5;
+    m.k_d = 1.0 - argument(7u);
+    m.k_s = argument(7u);
+    m.k_r = 0.25;
+    m.eta = vec3(argument(8u), argument(8u) * 0.75, argument(8u) * 1.25);
+    m.m0 = argument(10u);
+    m.k = vec3(argument(9u), argument(9u) * 0.5, argument(9u) * 0.25);
+    m.m1 = argument(11u);
+    m.w0 = 0.625;
+    m.w1 = 0.375;
+    m.k_t = 0.0;
+    m.flags = argument_u(12u);
+    m.transmit_color = vec3(0.0);
+    m.color_texture = 0u;
+    m.absorption = vec3(0.0);
+    m.emission = vec3(0.0);
+    return m;
+}
+
+void main() {
+    if (gl_GlobalInvocationID.x >= count) return;
+    vec3 wo = argument3(0u);
+    vec3 wi = argument3(3u);
+    Material m = material(function / 3u);
+    switch (function % 3u) {
+    case 0u:
+        result4(0u, eval_material(m, wo, wi));
+        result(4u, pdf_material(m, wo, wi));
+        break;
+    case 1u:
+        DirectionSample s = sample_material(m, wo, abs(argument2(3u)), argument(5u));
+        result4(0u, vec4(s.wi, s.pdf));
+        break;
+    default:
+        result(0u, ambient_material(m).x);
+        result(1u, albedo_material(m).y);
+        result4(2u, mirror_weight(m, argument(5u)));
+        result_u(6u, is_delta(m) ? 1u : 0u);
+        break;
+    }
+}

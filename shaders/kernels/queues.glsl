@@ -1,0 +1,66 @@
+// Where the transport steps put what they make: the device's side of `src/transport/mod.rs`.
+#ifndef KERNELS_QUEUES_GLSL
+#define KERNELS_QUEUES_GLSL
+
+#include "transport/film.glsl"
+
+// First entry of a level in the level buffer.
+uint level_first(uint level) {
+    return level == 0u ? 0u : control.level0_capacity + (level - 1u) * control.level_capacity;
+}
+
+// Appends a ray to the level of its depth. A full queue is counted, and ends the render with an error.
+void push_path(PathState path) {
+    uint capacity = path.depth == 0u ? control.level0_capacity : control.level_capacity;
+    uint at = atomicAdd(control.level_count[path.depth], 1u);
+    if (at >= capacity) {
+        atomicAdd(control.overflows, 1u);
+        return;
+    }
+    levels[level_first(path.depth) + at] = path;
+}
+
+// Appends a shadow ray.
+void push_shadow(ShadowRay shadow) {
+    uint at = atomicAdd(control.shadow_count, 1u);
+    if (at >= control.shadow_capacity) {
+        atomicAdd(control.overflows, 1u);
+        return;
+    }
+    shadows[at] = shadow;
+}
+
+// Adds a 64-bit integer to lane `lane` of a sum in a buffer: two atomic words with carry, so any order gives the same.
+#define ATOMIC_ADD_FIXED(sum, lane, value)                                     \
+    {                                                                          \
+        uint before = atomicAdd(sum.low[lane], value.low);                     \
+        uint carry = before + value.low < before ? 1u : 0u;                    \
+        if (value.high + carry != 0u) atomicAdd(sum.high[lane], value.high + carry); \
+    }
+
+// Adds `value` (radiance and alpha, throughput included) to the sample in `slot`.
+void add_contribution(float scale, uint slot, vec4 value, uint dither) {
+    for (uint lane = 0u; lane < 4u; lane++) {
+        Fixed units = to_fixed(value[lane], scale, dither_lane(dither, lane));
+        if ((units.low | units.high) != 0u) ATOMIC_ADD_FIXED(slots[slot], lane, units)
+        if (units.nan != 0u) atomicAdd(control.nan_count, 1u);
+    }
+}
+
+// Records the first hit of a camera ray for the auxiliary channels.
+void add_aov(PathState path, float depth, vec3 normal, vec3 albedo, uint object, uint material) {
+    uint index = batch.first_pixel + path.slot % batch.pixel_count;
+    for (uint lane = 0u; lane < 3u; lane++) {
+        Fixed normal_units = to_fixed(normal[lane], AOV_SCALE, 0.5);
+        ATOMIC_ADD_FIXED(aovs[index].normal, lane, normal_units)
+        Fixed albedo_units = to_fixed(albedo[lane], AOV_SCALE, 0.5);
+        ATOMIC_ADD_FIXED(aovs[index].albedo, lane, albedo_units)
+    }
+    if (path.sample_index == 0u) {
+        aovs[index].depth = depth;
+        aovs[index].object = object;
+        aovs[index].material = material;
+    }
+}
+
+#endif

@@ -1,0 +1,38 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// One invocation: takes the next chunk from the deepest level that has rays, and hands last round's shadow rays over.
+// Deepest first keeps every level below twice a chunk, so memory is bounded (ARCHITECTURE.md, "The wavefront").
+#include "kernels/bindings.glsl"
+
+uint groups(uint count) {
+    return (count + GROUP_SIZE - 1u) / GROUP_SIZE;
+}
+
+void main() {
+    if (gl_GlobalInvocationID.x != 0u) return;
+    control.shadow_pending = min(control.shadow_count, control.shadow_capacity);
+    control.shadow_count = 0u;
+    control.chunk_count = 0u;
+    for (uint level = header.max_depth + 1u; level-- > 0u;) {
+        uint waiting = control.level_count[level];
+        if (waiting != 0u) {
+            control.chunk_level = level;
+            control.chunk_count = min(waiting, control.chunk_limit);
+            control.chunk_first = waiting - control.chunk_count;
+            control.level_count[level] = control.chunk_first;
+            break;
+        }
+    }
+    control.extend = DispatchArguments(groups(control.chunk_count), 1u, 1u);
+    control.shade = control.extend;
+    control.shadow = DispatchArguments(groups(control.shadow_pending), 1u, 1u);
+    control.done = (control.chunk_count | control.shadow_pending) == 0u ? 1u : 0u;
+    control.rounds += control.done == 0u ? 1u : 0u;
+    uint closest = control.closest_rays.x + control.chunk_count;
+    control.closest_rays.y += closest < control.chunk_count ? 1u : 0u;
+    control.closest_rays.x = closest;
+    uint shadow = control.shadow_rays.x + control.shadow_pending;
+    control.shadow_rays.y += shadow < control.shadow_pending ? 1u : 0u;
+    control.shadow_rays.x = shadow;
+}

@@ -1,0 +1,78 @@
+// From radiance to the film's integers, whose sums do not care about order (strict rule 8).
+#ifndef TRANSPORT_FILM_GLSL
+#define TRANSPORT_FILM_GLSL
+
+#include "shading/sampling.glsl"
+
+// Scale of the normal and albedo sums, 2^22.
+const float AOV_SCALE = 4194304.0;
+// One contribution is clamped to +-2^39 fixed-point units, twice what a sample may hold.
+const float FIXED_LIMIT = 549755813888.0;
+// A sample's sum is clamped to +-2^38 units: 2^C with C = 16, times 2^k with k = 22. High word of that limit.
+const uint SAMPLE_LIMIT_HIGH = 64u;
+// Below this a contribution is nothing; above it no step of the conversion meets a subnormal.
+const float VALUE_MIN = 1.0e-30;
+
+// A signed 64-bit integer in two's complement, and whether the value it came from was not a number.
+struct Fixed {
+    uint low;
+    uint high;
+    uint nan;
+};
+
+// Dither of one lane in 0..1, from a contribution's hash.
+float dither_lane(uint dither, uint lane) {
+    return unit_float(hash_u32(dither + lane * 0x9e3779b9u));
+}
+
+// floor(value * scale + u) as a 64-bit integer. `scale` is a power of two, u in 0..1 dithers, so that light dimmer
+// than one unit is kept on average. Not-a-number gives 0 and is counted; beyond +-2^39 the value is clamped.
+Fixed to_fixed(float value, float scale, float u) {
+    uint magnitude_bits = floatBitsToUint(value) & 0x7fffffffu;
+    if (magnitude_bits > 0x7f800000u) {
+        return Fixed(0u, 0u, 1u);
+    }
+    if (abs(value) < VALUE_MIN) {
+        return Fixed(0u, 0u, 0u);
+    }
+    float scaled = value * scale;
+    float bounded = scaled > FIXED_LIMIT ? FIXED_LIMIT : scaled < -FIXED_LIMIT ? -FIXED_LIMIT : scaled;
+    float units = floor(bounded + u);
+    float magnitude = abs(units);
+    // Two parts below 2^24, so that each conversion is exact on every device.
+    float upper = floor(magnitude * 5.9604645e-8);
+    float lower = magnitude - upper * 16777216.0;
+    uint upper_bits = uint(upper);
+    uint low = (upper_bits << 24) | uint(lower);
+    uint high = upper_bits >> 8;
+    if (units < 0.0) {
+        // Two's complement.
+        uint negated = ~low + 1u;
+        uint carry = negated == 0u ? 1u : 0u;
+        return Fixed(negated, ~high + carry, 0u);
+    }
+    return Fixed(low, high, 0u);
+}
+
+// Adds to one lane of a sum, with carry.
+void add_fixed(inout FilmSum sum, uint lane, Fixed value) {
+    uint before = sum.low[lane];
+    sum.low[lane] = before + value.low;
+    uint carry = sum.low[lane] < before ? 1u : 0u;
+    sum.high[lane] = sum.high[lane] + value.high + carry;
+}
+
+// A sample's lane as its pixel takes it: clamped to +-2^38 units; `nan` is 1 where it was clamped.
+Fixed clamp_sample(uint low, uint high) {
+    bool negative = (high & 0x80000000u) != 0u;
+    if (!negative && high >= SAMPLE_LIMIT_HIGH && (high > SAMPLE_LIMIT_HIGH || low > 0u)) {
+        return Fixed(0u, SAMPLE_LIMIT_HIGH, 1u);
+    }
+    // -2^38 has the high word 2^32 - 64 and the low word 0.
+    if (negative && high < 0xffffffc0u) {
+        return Fixed(0u, 0xffffffc0u, 1u);
+    }
+    return Fixed(low, high, 0u);
+}
+
+#endif

@@ -1,0 +1,89 @@
+// The illumination model alone: I = emission + ambient + sum over lights, and what is seen through a pane.
+#ifndef TRANSPORT_LOCAL_GLSL
+#define TRANSPORT_LOCAL_GLSL
+
+#include "shading/frame.glsl"
+#include "shading/light.glsl"
+#include "shading/material.glsl"
+#include "shading/math.glsl"
+#include "shading/sampling.glsl"
+#include "shading/spectrum.glsl"
+#include "trace/spawn.glsl"
+#include "trace/surface.glsl"
+#include "transport/mod.glsl"
+
+// Smallest cosine between shading normal and viewer; interpolated normals that face away are bent up to it.
+const float COS_VIEW_MIN = 1.0e-3;
+// A shadow ray ends this fraction short of its light, so that a lamp's own glass does not hide it.
+const float SHADOW_END = 0.9999;
+
+// The shading normal a viewer at `wo` sees: on the viewer's side of the surface (both sides are shaded alike), and
+// bent towards the viewer where interpolation has turned it away.
+vec3 facing_normal(Surface surface, vec3 wo) {
+    float side = dot3(surface.normal_geometric, wo) < 0.0 ? -1.0 : 1.0;
+    vec3 normal = surface.normal * side;
+    float cos_view = dot3(normal, wo);
+    if (cos_view < COS_VIEW_MIN) {
+        return normalize3(normal + wo * (COS_VIEW_MIN - cos_view));
+    }
+    return normal;
+}
+
+// How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
+float own_weight(Material material) {
+    return (material.flags & MATERIAL_FILTERED) != 0u ? 1.0 : 1.0 - material.k_t;
+}
+
+// What the surface adds for one light, before any shadow: throughput * eval * radiance.
+Spectrum light_contribution(Spectrum weight, Material material, Frame frame, vec3 wo, vec3 wi, Spectrum radiance) {
+    return weight * eval_material(material, to_local(frame, wo), to_local(frame, wi)) * radiance;
+}
+
+// Adds emission, ambient and every light's share of the surface, and lets the ray go on through a pane.
+// `key`: of the path. Directions in world space. Radiance along the ray's way back.
+void shade_local(PathState path, SampleKey key, Surface surface, Material material) {
+    vec3 wo = -path.ray.direction;
+    Spectrum weight = path.throughput * own_weight(material);
+    Spectrum ambient = spectrum_from_rgb(header.ambient) * ambient_material(material);
+    Spectrum own = weight * (ambient + spectrum_from_rgb(material.emission));
+    // A mirror or a glass covers the background like anything else.
+    float alpha = path.coverage * (1.0 - material.k_t);
+    uint dither = dither_hash(key, DITHER_SURFACE);
+    add_contribution(header.film_scale, path.slot, vec4(own.x, own.y, own.z, alpha), dither);
+
+    if (material.model != MODEL_MIRROR && material.model != MODEL_DIELECTRIC) {
+        Frame frame = frame_from_normal(facing_normal(surface, wo));
+        for (uint index = 0u; index < header.light_count; index++) {
+            Light light = load_light(index);
+            LightSample lit = sample_light(light, surface.position);
+            Spectrum seen = light_contribution(weight, material, frame, wo, lit.wi, lit.radiance);
+            if (spectrum_max(seen) > 0.0) {
+                vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
+                uint light_dither = dither_hash(key, DITHER_LIGHT + index);
+                if (header.shadows != 0u && light.casts_shadow != 0u) {
+                    Ray ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
+                    push_shadow(ShadowRay(ray, contribution, path.slot, light_dither, 0u, 0u));
+                } else {
+                    add_contribution(header.film_scale, path.slot, contribution, light_dither);
+                }
+            }
+        }
+    }
+
+    if (material.k_t > 0.0) {
+        vec4 tint = vec4(material.k_t);
+        if ((material.flags & MATERIAL_FILTERED) != 0u) {
+            tint *= spectrum_from_rgb(material.transmit_color);
+        }
+        PathState through = path;
+        through.throughput = path.throughput * tint;
+        through.coverage = path.coverage * material.k_t;
+        through.path_id = hash_combine(path.path_id, LOBE_THROUGH);
+        through.ray = spawn_through(surface, path.ray.direction, path.ray.t_max);
+        if (spectrum_max(through.throughput) >= header.min_weight) {
+            push_path(through);
+        }
+    }
+}
+
+#endif

@@ -1,0 +1,71 @@
+// Ray tracing as a recursive local model. Source: Whitted 1980, "An Improved Illumination Model for Shaded Display".
+#ifndef TRANSPORT_WHITTED_GLSL
+#define TRANSPORT_WHITTED_GLSL
+
+#include "shading/dielectric.glsl"
+#include "shading/frame.glsl"
+#include "shading/fresnel.glsl"
+#include "shading/material.glsl"
+#include "shading/math.glsl"
+#include "shading/sampling.glsl"
+#include "shading/spectrum.glsl"
+#include "trace/spawn.glsl"
+#include "trace/surface.glsl"
+#include "transport/local.glsl"
+#include "transport/mod.glsl"
+
+// Appends one branch, unless its weight is below the scene's threshold.
+void push_branch(PathState path, Surface surface, vec3 wi, Spectrum weight, uint lobe) {
+    PathState branch = path;
+    branch.throughput = path.throughput * weight;
+    if (spectrum_max(branch.throughput) < header.min_weight) {
+        return;
+    }
+    branch.coverage = 0.0;
+    branch.depth = path.depth + 1u;
+    branch.path_id = hash_combine(path.path_id, lobe);
+    branch.ray = spawn_ray(surface, wi, T_INFINITE);
+    push_path(branch);
+}
+
+// Mirror direction of `wo` about the viewer's shading normal; about the geometric one where the first would point
+// into the surface.
+vec3 mirror_direction(Surface surface, vec3 wo) {
+    vec3 normal = facing_normal(surface, wo);
+    vec3 mirrored = normal * (2.0 * dot3(normal, wo)) - wo;
+    vec3 geometric = surface.normal_geometric;
+    float cos_geometric = dot3(geometric, wo);
+    if (dot3(geometric, mirrored) * cos_geometric > 0.0) {
+        return mirrored;
+    }
+    return geometric * (2.0 * cos_geometric) - wo;
+}
+
+// Follows the mirror branch of any material and both branches of a smooth dielectric, each with its Fresnel weight.
+// Media do not nest: a ray that leaves a dielectric is outside. Radiance is not scaled by eta^2 (Whitted's model).
+void shade_whitted(PathState path, Surface surface, Material material) {
+    vec3 wo = -path.ray.direction;
+    if (material.model != MODEL_DIELECTRIC) {
+        vec3 normal = facing_normal(surface, wo);
+        Spectrum weight = mirror_weight(material, dot3(normal, wo)) * own_weight(material);
+        push_branch(path, surface, mirror_direction(surface, wo), weight, LOBE_MIRROR);
+        return;
+    }
+    bool entering = dot3(surface.normal_geometric, wo) >= 0.0;
+    float eta = entering ? material.eta.x : rcp(material.eta.x);
+    Frame frame = frame_from_normal(facing_normal(surface, wo));
+    vec3 wo_local = to_local(frame, wo);
+    float reflectance = fresnel_dielectric(wo_local.z, eta);
+    push_branch(path, surface, mirror_direction(surface, wo), vec4(reflectance), LOBE_MIRROR);
+    Refraction refraction = refract_local(wo_local, eta);
+    if (refraction.total) {
+        return;
+    }
+    PathState inside = path;
+    inside.eta = entering ? material.eta.x : 1.0;
+    inside.absorption = entering ? material.absorption : vec3(0.0);
+    Spectrum weight = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
+    push_branch(inside, surface, to_world(frame, refraction.wt), weight, LOBE_REFRACT);
+}
+
+#endif

@@ -1,0 +1,178 @@
+//! `gonio devices`: what can be used, and why the rest cannot.
+
+use crate::render::vulkan::{DeviceInfo, Instance};
+use anyhow::Context;
+use clap::Args;
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+use std::process::{Command, ExitCode, Output, Stdio};
+
+#[derive(Args, Clone, Debug)]
+pub struct DevicesArgs {
+    /// Print everything that is known as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Ask the drivers in this process and print JSON: a driver may abort, so the visible command runs this as a child.
+    #[arg(long, hide = true)]
+    probe: bool,
+}
+
+/// Lists the Vulkan devices and the CPU backend.
+pub fn run(args: &DevicesArgs) -> anyhow::Result<ExitCode> {
+    if args.probe {
+        writeln!(io::stdout().lock(), "{}", probe())?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let answer = ask_child()?;
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut out = io::stdout().lock();
+    if args.json {
+        let report = json!({
+            "vulkan": answer,
+            "cpu": { "threads": threads, "usable": true },
+        });
+        writeln!(out, "{}", serde_json::to_string_pretty(&report)?)?;
+    } else {
+        write!(out, "{}", table(&Answer::deserialize(answer)?, threads))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Everything the drivers say, or why there is nothing.
+fn probe() -> Value {
+    match Instance::new(false).and_then(|instance| instance.devices()) {
+        Ok(devices) => json!({ "devices": devices.iter().map(describe).collect::<Vec<_>>(), "problem": null }),
+        Err(error) => json!({ "devices": [], "problem": error.to_string() }),
+    }
+}
+
+fn describe(info: &DeviceInfo) -> Value {
+    let mut value = json!(info);
+    value["usable"] = json!(info.is_usable());
+    value
+}
+
+/// Runs the probe in a child process.
+fn ask_child() -> anyhow::Result<Value> {
+    let program = std::env::current_exe().context("cannot find this program's own file")?;
+    let output = Command::new(program)
+        .args(["devices", "--probe"])
+        .stdin(Stdio::null())
+        .output()
+        .context("cannot start the process that asks the Vulkan drivers")?;
+    let noise = String::from_utf8_lossy(&output.stderr);
+    for line in noise.lines() {
+        log::info!("while asking the drivers: {line}");
+    }
+    Ok(understand(&output))
+}
+
+/// The probe's answer; a process that died is an answer as well.
+fn understand(output: &Output) -> Value {
+    let answer = serde_json::from_slice(&output.stdout).ok().filter(|_| output.status.success());
+    answer.unwrap_or_else(|| {
+        json!({
+            "devices": [],
+            "problem": format!(
+                "a Vulkan driver brought down the process that asked it ({}); -v shows what it said, and VK_DRIVER_FILES \
+                 chooses drivers",
+                output.status
+            ),
+        })
+    })
+}
+
+/// The probe's answer as far as the table shows it.
+#[derive(Deserialize)]
+struct Answer {
+    devices: Vec<Row>,
+    problem: Option<String>,
+}
+
+#[derive(Deserialize)]
+struct Row {
+    index: usize,
+    name: String,
+    kind: String,
+    vulkan_version: String,
+    driver: String,
+    driver_version: String,
+    missing: Vec<String>,
+}
+
+/// Devices by index, the CPU backend last, and below them the reasons.
+fn table(answer: &Answer, threads: usize) -> String {
+    let mut rows = vec![["DEVICE", "NAME", "KIND", "VULKAN", "DRIVER", "USABLE"].map(str::to_owned)];
+    for row in &answer.devices {
+        rows.push([
+            row.index.to_string(),
+            row.name.clone(),
+            row.kind.clone(),
+            row.vulkan_version.clone(),
+            format!("{} {}", row.driver, row.driver_version).trim().to_owned(),
+            if row.missing.is_empty() { "yes" } else { "no" }.to_owned(),
+        ]);
+    }
+    let unit = if threads == 1 { "thread" } else { "threads" };
+    rows.push(["-", "", "cpu", "-", "-", "yes"].map(str::to_owned));
+    if let Some(row) = rows.last_mut() {
+        row[1] = format!("the CPU backend ({threads} {unit})");
+    }
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths = [0, 1, 2, 3, 4].map(width);
+    let mut text = String::new();
+    for row in &rows {
+        for (cell, width) in row.iter().zip(widths) {
+            let _ = write!(text, "{cell:width$}  ");
+        }
+        let _ = writeln!(text, "{}", row[5]);
+    }
+    for row in &answer.devices {
+        for reason in &row.missing {
+            let _ = writeln!(text, "device {} cannot be used: {reason}", row.index);
+        }
+    }
+    if let Some(problem) = &answer.problem {
+        let _ = writeln!(text, "{problem}");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_lines_up_and_gives_the_reasons_below() {
+        let answer = json!({
+            "devices": [
+                { "index": 0, "name": "Soft", "kind": "cpu", "vulkan_version": "1.3.0", "driver": "lava", "driver_version": "2", "missing": [] },
+                { "index": 1, "name": "Old Card", "kind": "discrete", "vulkan_version": "1.1.0", "driver": "", "driver_version": "",
+                  "missing": ["Vulkan 1.1.0 only"] },
+            ],
+            "problem": null,
+        });
+        let text = table(&Answer::deserialize(answer).unwrap(), 2);
+        let expected = "\
+DEVICE  NAME                         KIND      VULKAN  DRIVER  USABLE
+0       Soft                         cpu       1.3.0   lava 2  yes
+1       Old Card                     discrete  1.1.0           no
+-       the CPU backend (2 threads)  cpu       -       -       yes
+device 1 cannot be used: Vulkan 1.1.0 only
+";
+        assert_eq!(text, expected);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_driver_that_aborts_is_reported_and_the_cpu_backend_is_still_listed() {
+        use std::os::unix::process::ExitStatusExt;
+        let aborted = std::process::ExitStatus::from_raw(6);
+        let output = Output { status: aborted, stdout: b"{\"devices\":[".to_vec(), stderr: Vec::new() };
+        let text = table(&Answer::deserialize(understand(&output)).unwrap(), 1);
+        assert!(text.contains("the CPU backend (1 thread)"), "{text}");
+        assert!(text.contains("a Vulkan driver brought down the process that asked it (signal: 6"), "{text}");
+    }
+}

@@ -1,0 +1,61 @@
+//! Flags of every command that writes a picture of a film.
+
+use crate::film::display::tonemap_from_name;
+use crate::film::write::{Aov, Format, Picture};
+use crate::film::{Film, FilmError, OutputFile};
+use crate::scene::ToneMap;
+use anyhow::{Context, Result};
+use clap::Args;
+use std::io::Write;
+use std::path::Path;
+
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Output")]
+pub struct OutputFlags {
+    /// Format, where the output's name does not tell: png, exr, hdr, gfilm.
+    #[arg(long, value_name = "NAME", value_parser = format_name)]
+    pub format: Option<Format>,
+    /// Bits a channel of a PNG.
+    #[arg(long, default_value = "8", value_parser = ["8", "16"])]
+    pub bits: String,
+    /// Exposure of a PNG in stops; the scene's if not given.
+    #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = stops)]
+    pub exposure: Option<f32>,
+    /// Tone curve of a PNG: clamp, normalise, reinhard; the scene's if not given.
+    #[arg(long, value_name = "NAME", value_parser = tonemap_from_name)]
+    pub tonemap: Option<ToneMap>,
+}
+
+fn format_name(name: &str) -> Result<Format, String> {
+    Format::from_name(name).ok_or_else(|| "allowed: png, exr, hdr, gfilm".into())
+}
+
+fn stops(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if (-100.0..=100.0).contains(&value) => Ok(value),
+        _ => Err("expected stops from -100 to 100".into()),
+    }
+}
+
+impl OutputFlags {
+    /// The format for `path`.
+    pub fn format_of(&self, path: &Path) -> Result<Format, FilmError> {
+        self.format.map_or_else(|| Format::of(path), Ok)
+    }
+
+    /// Writes the film and prints its hash and samples: on stdout, unless that carries the picture.
+    pub fn write(&self, film: &mut Film, format: Format, aovs: &[Aov], mut output: OutputFile) -> Result<()> {
+        let tonemap = self.tonemap.unwrap_or(film.spec().tonemap);
+        film.set_display(tonemap, self.exposure.unwrap_or(film.spec().exposure));
+        let picture = Picture { format, sixteen_bit: self.bits == "16", aovs };
+        picture.write(film, &mut output)?;
+        let piped = output.is_stdout();
+        output.commit()?;
+        let report = format!("film {}\nsamples {}\n", film.hash(), film.samples());
+        if piped {
+            eprint!("{report}");
+            return Ok(());
+        }
+        std::io::stdout().write_all(report.as_bytes()).context("cannot write standard output")
+    }
+}

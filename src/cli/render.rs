@@ -1,0 +1,260 @@
+//! `gonio render`: a picture of a scene.
+
+use super::interrupt::Interrupt;
+use super::output::OutputFlags;
+use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, crop_of, film_of};
+use super::{Usage, progress};
+use crate::bake::SceneData;
+use crate::film::write::{Aov, Format};
+use crate::film::{Film, OutputFile, Rect};
+use crate::render::{Bounce, Counters, Job, Renderer, Watch};
+use crate::scene::Scene;
+use clap::Args;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::str::FromStr;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  gonio render scenes/first-light.toml -o first-light.png
+  gonio render bunny.obj --size 1920x1080 --spp 64 -o bunny.png
+  gonio render scene.toml --samples 0..32 -o a.gfilm     half of the samples, to merge with another machine's
+  gonio render scene.toml --time 60 -o best.exr          whatever a minute gives
+  gonio render scene.toml --pixel 320,200                every bounce of one sample
+  cat scene.toml | gonio render - -o - | display         from standard input to standard output")]
+pub struct RenderArgs {
+    /// .toml, .obj, .ply, .gltf, .glb; `-` is TOML on standard input.
+    scene: PathBuf,
+    /// .png, .exr, .hdr, or .gfilm for the film itself; `-` is PNG on standard output. Default: the scene's name, .png.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Render these sample indices only, the end not included.
+    #[arg(long, value_name = "A..B", conflicts_with = "spp")]
+    samples: Option<SampleRange>,
+    /// Render this part of the frame only; its pixels are those of the whole picture.
+    #[arg(long, value_name = "X0,Y0,X1,Y1")]
+    crop: Option<Crop>,
+    /// Print every bounce of one sample of this pixel (the first of --samples) instead of making a picture.
+    #[arg(long, value_name = "X,Y", conflicts_with_all = ["output", "time"])]
+    pixel: Option<Pixel>,
+    /// Stop at the end of the pass during which this time runs out.
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    time: Option<Duration>,
+    /// Further layers of an EXR, separated by commas.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    aov: Vec<Aov>,
+    /// Leave the background out; alpha is coverage.
+    #[arg(long)]
+    transparent: bool,
+    /// Write what was done, and how fast, as JSON.
+    #[arg(long, value_name = "FILE")]
+    stats: Option<PathBuf>,
+    /// No progress bar.
+    #[arg(long)]
+    no_progress: bool,
+    #[command(flatten)]
+    scene_flags: SceneFlags,
+    #[command(flatten)]
+    picture: OutputFlags,
+    #[command(flatten)]
+    backend: BackendFlags,
+}
+
+/// `A..B`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct SampleRange(std::ops::Range<u32>);
+
+impl FromStr for SampleRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parsed = text.split_once("..").and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+        match parsed {
+            Some((a, b)) if a < b && b <= crate::film::MAX_SAMPLES => Ok(Self(a..b)),
+            _ => Err("expected A..B with A < B <= 16777216".to_owned()),
+        }
+    }
+}
+
+fn parse_seconds(text: &str) -> Result<Duration, String> {
+    let seconds: f64 = text.parse().map_err(|_| "expected a number of seconds".to_owned())?;
+    Duration::try_from_secs_f64(seconds).map_err(|_| "expected a number of seconds, not negative".to_owned())
+}
+
+/// How a render ended.
+struct Outcome {
+    counters: Counters,
+    render_time: Duration,
+    passes: u32,
+    interrupted: Option<u8>,
+}
+
+pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
+    let interrupt = Interrupt::listen()?;
+    let scene = args.scene_flags.load(&args.scene)?;
+    let crop = crop_of(&scene, args.crop)?;
+    if let Some(pixel) = args.pixel {
+        return inspect(args, &scene, pixel);
+    }
+    // Opened first: a bad path must not cost a render.
+    let path = args.output.clone().unwrap_or_else(|| default_output(&args.scene));
+    let format = args.picture.format_of(&path)?;
+    if !args.aov.is_empty() && !matches!(format, Format::Exr | Format::Gfilm) {
+        return Err(Usage(format!("--aov needs an .exr (or .gfilm) file, not {}", path.display())).into());
+    }
+    let output = OutputFile::open(&path)?;
+    let stats_file = args.stats.as_deref().map(OutputFile::open).transpose()?;
+
+    let bake_start = Instant::now();
+    let mut data = bake_scene(&scene)?;
+    data.header.aovs = u32::from(!args.aov.is_empty());
+    data.header.hide_background = u32::from(args.transparent);
+    let bake_time = bake_start.elapsed();
+    let mut renderer = args.backend.renderer(&data)?;
+    log::info!("rendering on {}", renderer.name());
+
+    let mut film = film_of(&scene, &data, crop);
+    let samples = match (&args.samples, args.time, args.scene_flags.spp) {
+        (Some(range), _, _) => range.0.clone(),
+        // With a time limit and no count, the time decides.
+        (None, Some(_), None) => 0..crate::film::MAX_SAMPLES,
+        (None, _, _) => 0..scene.settings.samples,
+    };
+    let show_progress = !quiet && !args.no_progress;
+    let outcome = render_passes(renderer.as_mut(), crop, samples, args.time, &mut film, &interrupt, show_progress)?;
+    report(&film);
+
+    args.picture.write(&mut film, format, &args.aov, output)?;
+    if let Some(mut file) = stats_file {
+        let stats = stats_json(args, &data, &film, renderer.as_ref(), &outcome, bake_time);
+        writeln!(file, "{stats:#}")?;
+        file.commit()?;
+    }
+    log::info!("{} in {:.2} s", path.display(), outcome.render_time.as_secs_f64());
+    Ok(outcome.interrupted.map_or(ExitCode::SUCCESS, ExitCode::from))
+}
+
+/// The scene's name in the current folder, as a PNG; standard input makes `out.png`.
+fn default_output(scene: &Path) -> PathBuf {
+    let stem = if scene == Path::new("-") { None } else { scene.file_stem() };
+    PathBuf::from(stem.unwrap_or("out".as_ref())).with_extension("png")
+}
+
+/// Renders pass by pass, each a whole number of samples for every pixel of the crop, until the samples, the time or
+/// the user's patience end.
+fn render_passes(
+    renderer: &mut dyn Renderer,
+    crop: Rect,
+    samples: std::ops::Range<u32>,
+    time: Option<Duration>,
+    film: &mut Film,
+    interrupt: &Interrupt,
+    show_progress: bool,
+) -> anyhow::Result<Outcome> {
+    let start = Instant::now();
+    let pixels = crop.area() as u64;
+    let bar = progress::bar(pixels * u64::from(samples.end - samples.start), show_progress);
+    let abort = AtomicBool::new(false);
+    let watch = Watch { abort: &abort, advance: &|done| bar.inc(done) };
+    let mut outcome = Outcome { counters: Counters::default(), render_time: Duration::ZERO, passes: 0, interrupted: None };
+    let mut next = samples.start;
+    let mut pass_samples = 1;
+    while next < samples.end {
+        let end = next.saturating_add(pass_samples).min(samples.end);
+        let pass_start = Instant::now();
+        outcome.counters += renderer.accumulate(&Job { crop, samples: next..end }, film, &watch)?;
+        outcome.passes += 1;
+        let pass_time = pass_start.elapsed();
+        outcome.interrupted = interrupt.exit_code();
+        if outcome.interrupted.is_some() || time.is_some_and(|limit| start.elapsed() >= limit) {
+            break;
+        }
+        // Passes of about half a second: long enough to fill a device, short enough to stop at.
+        pass_samples = (f64::from(end - next) * 0.5 / pass_time.as_secs_f64().max(1e-4)).clamp(1.0, f64::from(4 * (end - next))) as u32;
+        next = end;
+    }
+    bar.finish_and_clear();
+    outcome.render_time = start.elapsed();
+    Ok(outcome)
+}
+
+/// Says what the user should know of the samples.
+fn report(film: &Film) {
+    if film.nan_count() > 0 {
+        log::warn!("{} contributions were not a number and count as 0", film.nan_count());
+    }
+    if film.clamped_count() > 0 {
+        log::warn!("{} samples were clamped at 65536 film units; raise film.unit", film.clamped_count());
+    }
+}
+
+fn stats_json(
+    args: &RenderArgs,
+    data: &SceneData,
+    film: &Film,
+    renderer: &dyn Renderer,
+    outcome: &Outcome,
+    bake_time: Duration,
+) -> serde_json::Value {
+    let seconds = outcome.render_time.as_secs_f64();
+    let rays = outcome.counters.closest_rays + outcome.counters.shadow_rays;
+    serde_json::json!({
+        "schema": 1,
+        "gonio": env!("CARGO_PKG_VERSION"),
+        "scene": args.scene,
+        "film_hash": film.hash().to_string(),
+        "device": renderer.name(),
+        "width": film.spec().width,
+        "height": film.spec().height,
+        "crop": film.crop(),
+        "seed": film.spec().seed,
+        "samples": film.samples().to_string(),
+        "passes": outcome.passes,
+        "interrupted": outcome.interrupted.is_some(),
+        "nan_count": film.nan_count(),
+        "clamped_count": film.clamped_count(),
+        "render_s": seconds,
+        "bake_s": bake_time.as_secs_f64(),
+        "rays_per_s": rays as f64 / seconds.max(1e-9),
+        "counters": outcome.counters,
+        "triangles": data.triangles.len(),
+        "instances": data.instances.len(),
+        "nodes": data.nodes.len(),
+        "lights": data.lights.len(),
+    })
+}
+
+/// Prints every bounce of one sample.
+fn inspect(args: &RenderArgs, scene: &Scene, pixel: Pixel) -> anyhow::Result<ExitCode> {
+    if pixel.x >= scene.film.width || pixel.y >= scene.film.height {
+        let frame = Rect::whole(scene.film.width, scene.film.height);
+        return Err(Usage(format!("--pixel {},{} is not inside the frame {frame}", pixel.x, pixel.y)).into());
+    }
+    let data = bake_scene(scene)?;
+    let sample = args.samples.as_ref().map_or(0, |range| range.0.start);
+    let mut renderer = args.backend.renderer(&data)?;
+    let bounces = renderer.inspect(pixel.x, pixel.y, sample)?;
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "pixel {},{} sample {sample} on {}", pixel.x, pixel.y, renderer.name())?;
+    for bounce in &bounces {
+        print_bounce(&mut out, bounce)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// One bounce in a block of lines.
+pub(super) fn print_bounce(out: &mut impl Write, bounce: &Bounce) -> std::io::Result<()> {
+    let (path, ray, hit) = (&bounce.path, &bounce.path.ray, &bounce.hit);
+    writeln!(out, "depth {} path {:08x}", path.depth, path.path_id)?;
+    writeln!(out, "  origin     {:?}", ray.origin.to_array())?;
+    writeln!(out, "  direction  {:?}", ray.direction.to_array())?;
+    writeln!(out, "  throughput {:?}", path.throughput.to_array())?;
+    if hit.instance == crate::layout::INVALID {
+        return writeln!(out, "  leaves the scene");
+    }
+    writeln!(out, "  hit        t {:?}, instance {}, primitive {}, b {:?} {:?}", hit.t, hit.instance, hit.primitive, hit.b1, hit.b2)
+}

@@ -1,0 +1,237 @@
+//! What render, parity and others share: from flags to a baked scene and a renderer.
+
+use super::Usage;
+use crate::bake::{SceneData, bake};
+use crate::film::{Film, FilmSpec, Rect};
+use crate::render::cpu::CpuRenderer;
+use crate::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
+use crate::render::{RenderError, Renderer};
+use crate::scene::{Integrator, Scene, load};
+use anyhow::Context;
+use clap::{Args, ValueEnum};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// `WxH`, 1 to 65,535 each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    pub width: u32,
+    pub height: u32,
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+        match parsed {
+            Some((width, height)) if (1..=65_535).contains(&width) && (1..=65_535).contains(&height) => Ok(Self { width, height }),
+            _ => Err("expected WIDTHxHEIGHT, each 1 to 65535, as in 1280x720".to_owned()),
+        }
+    }
+}
+
+/// `X0,Y0,X1,Y1` in pixels of the full frame; the second corner is outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop(pub Rect);
+
+impl FromStr for Crop {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+        match numbers.as_deref() {
+            Some(&[x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => {
+                Ok(Self(Rect { x: x0, y: y0, width: x1 - x0, height: y1 - y0 }))
+            }
+            _ => Err("expected X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1, in pixels of the full frame".to_owned()),
+        }
+    }
+}
+
+/// `X,Y`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pixel {
+    pub x: u32,
+    pub y: u32,
+}
+
+impl FromStr for Pixel {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parsed = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
+        parsed.map(|(x, y)| Self { x, y }).ok_or_else(|| "expected X,Y in pixels, from the upper left corner".to_owned())
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum IntegratorName {
+    Local,
+    Whitted,
+}
+
+/// The scene and what of it the command line changes.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Scene")]
+pub struct SceneFlags {
+    /// Size of the full frame.
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Samples a pixel.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16_777_216))]
+    pub spp: Option<u32>,
+    /// Seed of the random numbers.
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u32>,
+    /// How light is followed.
+    #[arg(long)]
+    pub integrator: Option<IntegratorName>,
+    /// Scattering events a ray may see.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=64))]
+    pub max_depth: Option<u32>,
+    /// Change any key of the scene file, as in `material.copper.color=[1,0,0]`; may be repeated.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+impl SceneFlags {
+    /// Loads a scene (`-` is TOML on standard input) and applies the flags. Prints the loader's warnings.
+    pub fn load(&self, path: &Path) -> anyhow::Result<Scene> {
+        let overrides = self
+            .set
+            .iter()
+            .map(|text| text.parse().map_err(|error| Usage(format!("--set {text}: {error}"))))
+            .collect::<Result<Vec<load::Override>, _>>()?;
+        let mut scene = load::load(path, &overrides)?;
+        if let Some(size) = self.size {
+            (scene.film.width, scene.film.height) = (size.width, size.height);
+        }
+        let settings = &mut scene.settings;
+        settings.samples = self.spp.unwrap_or(settings.samples);
+        settings.seed = self.seed.unwrap_or(settings.seed);
+        settings.max_depth = self.max_depth.unwrap_or(settings.max_depth);
+        match self.integrator {
+            Some(IntegratorName::Local) => settings.integrator = Integrator::Local,
+            Some(IntegratorName::Whitted) => settings.integrator = Integrator::Whitted,
+            None => {}
+        }
+        for warning in &scene.warnings {
+            log::warn!("{warning}");
+        }
+        Ok(scene)
+    }
+}
+
+/// Bakes a scene and prints what baking dropped.
+pub fn bake_scene(scene: &Scene) -> anyhow::Result<SceneData> {
+    let data = bake(scene).with_context(|| scene.name.clone())?;
+    for warning in &data.warnings {
+        log::warn!("{warning}");
+    }
+    Ok(data)
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum BackendName {
+    /// A Vulkan device if there is one (discrete, integrated, virtual, software in this order), else the CPU.
+    #[default]
+    Auto,
+    Vulkan,
+    Cpu,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum FetchName {
+    /// Texel buffers on software devices, storage buffers on others.
+    #[default]
+    Auto,
+    Texel,
+    Storage,
+}
+
+impl From<FetchName> for FetchChoice {
+    fn from(name: FetchName) -> Self {
+        match name {
+            FetchName::Auto => Self::Auto,
+            FetchName::Texel => Self::Texel,
+            FetchName::Storage => Self::Storage,
+        }
+    }
+}
+
+/// What to compute on.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Device")]
+pub struct BackendFlags {
+    /// What to compute on.
+    #[arg(long, default_value = "auto")]
+    pub backend: BackendName,
+    /// A Vulkan device: its index or a part of its name as `gonio devices` prints them, or its kind
+    /// (discrete, integrated, virtual, software).
+    #[arg(long, value_name = "INDEX|NAME|KIND")]
+    pub device: Option<String>,
+    /// How kernels read the scene.
+    #[arg(long, default_value = "auto")]
+    pub fetch: FetchName,
+    /// Threads of the CPU backend; as many as cores if not given.
+    #[arg(short, long, value_name = "N")]
+    pub threads: Option<usize>,
+}
+
+impl BackendFlags {
+    /// The renderer the flags ask for.
+    pub fn renderer<'a>(&self, data: &'a SceneData) -> Result<Box<dyn Renderer + 'a>, RenderError> {
+        let vulkan = || VulkanRenderer::new(data, self.vulkan_options());
+        match self.backend {
+            BackendName::Cpu => Ok(Box::new(CpuRenderer::new(data, self.threads)?)),
+            BackendName::Vulkan => Ok(Box::new(vulkan()?)),
+            BackendName::Auto if self.device.is_some() => Ok(Box::new(vulkan()?)),
+            BackendName::Auto => match vulkan() {
+                Ok(renderer) => Ok(Box::new(renderer)),
+                Err(RenderError::NoDevice(reason)) => {
+                    log::warn!("{reason}: using the CPU backend");
+                    Ok(Box::new(CpuRenderer::new(data, self.threads)?))
+                }
+                Err(error) => Err(error),
+            },
+        }
+    }
+
+    fn vulkan_options(&self) -> VulkanOptions {
+        VulkanOptions { device: self.device.clone(), fetch: self.fetch.into(), ..VulkanOptions::default() }
+    }
+}
+
+/// The crop the flag asks for, checked against the frame; the whole frame without one.
+pub fn crop_of(scene: &Scene, crop: Option<Crop>) -> anyhow::Result<Rect> {
+    let whole = Rect::whole(scene.film.width, scene.film.height);
+    match crop {
+        None => Ok(whole),
+        Some(Crop(rect)) if whole.contains(&rect) => Ok(rect),
+        Some(Crop(rect)) => Err(Usage(format!("--crop {rect} is not inside the frame {whole}")).into()),
+    }
+}
+
+/// An empty film for a scene.
+pub fn film_of(scene: &Scene, data: &SceneData, crop: Rect) -> Film {
+    let integrator = match scene.settings.integrator {
+        Integrator::Local => "local",
+        Integrator::Whitted => "whitted",
+    };
+    Film::new(FilmSpec {
+        width: scene.film.width,
+        height: scene.film.height,
+        crop,
+        unit_exponent: scene.film.unit_exponent,
+        seed: scene.settings.seed,
+        scene_digest: data.digest(),
+        scene_name: PathBuf::from(&scene.name).file_name().map_or_else(|| scene.name.clone(), |name| name.to_string_lossy().into_owned()),
+        integrator: integrator.to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        transparent: data.header.hide_background != 0,
+        aovs: data.header.aovs != 0,
+        tonemap: scene.film.tonemap,
+        exposure: scene.film.exposure,
+    })
+}

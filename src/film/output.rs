@@ -1,0 +1,196 @@
+//! Output files that are whole or not there.
+
+use super::FilmError;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// A file to be: opened before the work starts, so that a bad path fails at once; written under a temporary name in the
+/// same folder; given its name by `commit`, and removed if that is never reached. Whatever had the name before stays
+/// until then. What is no regular file (`/dev/null`, a pipe) is written to directly, and `-` is standard output.
+#[derive(Debug)]
+pub struct OutputFile {
+    path: PathBuf,
+    sink: Sink,
+}
+
+#[derive(Debug)]
+enum Sink {
+    Stdout(io::Stdout),
+    Direct(BufWriter<File>),
+    Temporary {
+        out: BufWriter<File>,
+        temporary: Remove,
+        target: PathBuf,
+    },
+}
+
+/// Removes the file when dropped, unless its path was taken.
+#[derive(Debug)]
+struct Remove(Option<PathBuf>);
+
+impl Drop for Remove {
+    fn drop(&mut self) {
+        if let Some(path) = self.0.take() {
+            // Nothing can be done about a failure here; the error that led here is the one to report.
+            let _ = fs::remove_file(path);
+        }
+    }
+}
+
+impl OutputFile {
+    /// Opens `path` for writing; `-` is standard output.
+    pub fn open(path: &Path) -> Result<Self, FilmError> {
+        Self::open_sink(path)
+            .map(|sink| Self {
+                path: path.into(),
+                sink,
+            })
+            .map_err(|e| FilmError::write(path, e))
+    }
+
+    fn open_sink(path: &Path) -> io::Result<Sink> {
+        if path == Path::new("-") {
+            return Ok(Sink::Stdout(io::stdout()));
+        }
+        if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+            return Err(io::Error::other("the name is a folder's"));
+        }
+        let existing = match fs::metadata(path) {
+            Ok(existing) => Some(existing),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            Err(error) => return Err(error),
+        };
+        if let Some(existing) = &existing {
+            if existing.is_dir() {
+                return Err(io::Error::other("it is a folder"));
+            }
+            if !existing.is_file() {
+                return Ok(Sink::Direct(BufWriter::new(
+                    OpenOptions::new().write(true).open(path)?,
+                )));
+            }
+            // Renaming would replace a file that must not be written to.
+            if existing.permissions().readonly() {
+                return Err(io::Error::new(
+                    io::ErrorKind::PermissionDenied,
+                    "it is read-only",
+                ));
+            }
+            OpenOptions::new().write(true).open(path)?;
+        }
+        let target = follow_links(path)?;
+        let (file, temporary) = create_temporary(&target)?;
+        if let Some(existing) = existing {
+            file.set_permissions(existing.permissions())?;
+        }
+        Ok(Sink::Temporary {
+            out: BufWriter::new(file),
+            temporary,
+            target,
+        })
+    }
+
+    /// The path as it was given.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether it is standard output, which then carries nothing else.
+    pub fn is_stdout(&self) -> bool {
+        matches!(self.sink, Sink::Stdout(_))
+    }
+
+    /// Everything is written: gives the file its name.
+    pub fn commit(self) -> Result<(), FilmError> {
+        let Self { path, sink } = self;
+        let finish = || -> io::Result<()> {
+            match sink {
+                Sink::Stdout(mut out) => out.flush(),
+                Sink::Direct(mut out) => out.flush(),
+                Sink::Temporary {
+                    out,
+                    mut temporary,
+                    target,
+                } => {
+                    let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+                    // Some file systems report a full disk only here.
+                    file.sync_all()?;
+                    drop(file);
+                    if let Some(from) = &temporary.0 {
+                        fs::rename(from, target)?;
+                    }
+                    temporary.0 = None;
+                    Ok(())
+                }
+            }
+        };
+        finish().map_err(|e| FilmError::write(&path, e))
+    }
+}
+
+impl Write for OutputFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.sink {
+            Sink::Stdout(out) => out.write(bytes),
+            Sink::Direct(out) | Sink::Temporary { out, .. } => out.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.sink {
+            Sink::Stdout(out) => out.flush(),
+            Sink::Direct(out) | Sink::Temporary { out, .. } => out.flush(),
+        }
+    }
+}
+
+/// The file behind symbolic links, there or not: renaming onto a link would replace the link.
+fn follow_links(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_path_buf();
+    // The kernel's own limit; a loop was already refused by `metadata`.
+    for _ in 0..40 {
+        match fs::symlink_metadata(&path) {
+            Ok(found) if found.is_symlink() => path = folder_of(&path).join(fs::read_link(&path)?),
+            _ => break,
+        }
+    }
+    Ok(path)
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Creates a hidden file of a new name beside `target`.
+fn create_temporary(target: &Path) -> io::Result<(File, Remove)> {
+    let Some(name) = target.file_name() else {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "it has no file name",
+        ));
+    };
+    let folder = folder_of(target);
+    for attempt in 0..1000 {
+        let mut hidden = std::ffi::OsString::from(".");
+        // File names are at most 255 bytes on most systems: a long one is cut, the rest keeps it unique.
+        hidden.push(name.to_string_lossy().chars().take(40).collect::<String>());
+        hidden.push(format!(".{}-{attempt}.part", std::process::id()));
+        let path = folder.join(hidden);
+        match OpenOptions::new().write(true).create_new(true).open(&path) {
+            Ok(file) => return Ok((file, Remove(Some(path)))),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                return Err(io::Error::new(
+                    error.kind(),
+                    format!("no folder {}", folder.display()),
+                ));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Err(io::Error::other("too many unfinished files beside it"))
+}

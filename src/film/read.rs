@@ -1,0 +1,281 @@
+//! Pictures of any format, told apart by their first bytes, as linear light.
+
+use super::display::srgb_decode;
+use super::{Film, FilmError, Image, gfilm};
+use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits};
+use std::fs::File;
+use std::io::{self, Cursor, Read};
+use std::path::Path;
+
+/// Pixels a picture may have: 2^28, 4 GiB as linear light.
+pub const MAX_PIXELS: u64 = 1 << 28;
+
+/// A picture that was read.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Linear, premultiplied; alpha is 1 where the file has none.
+    pub image: Image,
+    /// The integers as they were stored, for the formats that store them.
+    pub codes: Option<Codes>,
+    /// For a film: its hash.
+    pub film_hash: Option<blake3::Hash>,
+}
+
+/// Stored integers: r, g, b, alpha, not premultiplied; grey is repeated, an absent alpha is the largest code.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Codes {
+    /// 8 or 16.
+    pub bits: u32,
+    pub pixels: Vec<[u16; 4]>,
+}
+
+/// The file, or standard input for `-`.
+fn open(path: &Path) -> io::Result<Box<dyn Read>> {
+    if path == Path::new("-") {
+        return Ok(Box::new(io::stdin().lock()));
+    }
+    let file = File::open(path)?;
+    if file.metadata()?.is_dir() {
+        return Err(io::Error::other("it is a folder"));
+    }
+    Ok(Box::new(io::BufReader::new(file)))
+}
+
+/// Reads a `.gfilm` file; `-` is standard input.
+pub fn read_film(path: &Path) -> Result<Film, FilmError> {
+    let mut source = open(path).map_err(|e| FilmError::read(path, e))?;
+    gfilm::read(path, &mut source)
+}
+
+/// Reads a picture: PNG, JPEG, WebP, Radiance HDR, OpenEXR or gfilm; `-` is standard input.
+/// Integers are taken as sRGB. Of an EXR the first part with R, G, B or with Y is taken.
+pub fn read_picture(path: &Path) -> Result<Picture, FilmError> {
+    let source = open(path).map_err(|e| FilmError::read(path, e))?;
+    read_picture_from(path, source)
+}
+
+/// As `read_picture`, from a stream; `path` is its name in messages.
+pub fn read_picture_from(path: &Path, mut source: impl Read) -> Result<Picture, FilmError> {
+    let io = |e| FilmError::read(path, e);
+    // The first bytes before the rest: an endless stream of something else ends here.
+    let mut bytes = Vec::new();
+    source
+        .by_ref()
+        .take(16)
+        .read_to_end(&mut bytes)
+        .map_err(io)?;
+    if bytes.starts_with(&gfilm::MAGIC) {
+        return gfilm::read(path, &mut Cursor::new(bytes).chain(source))
+            .map(|film| film_picture(&film));
+    }
+    let format = match bytes.as_slice() {
+        [0x76, 0x2f, 0x31, 0x01, ..] => None,
+        [0x89, b'P', b'N', b'G', ..] => Some(ImageFormat::Png),
+        [0xff, 0xd8, 0xff, ..] => Some(ImageFormat::Jpeg),
+        [b'#', b'?', ..] => Some(ImageFormat::Hdr),
+        [
+            b'R',
+            b'I',
+            b'F',
+            b'F',
+            _,
+            _,
+            _,
+            _,
+            b'W',
+            b'E',
+            b'B',
+            b'P',
+            ..,
+        ] => Some(ImageFormat::WebP),
+        _ => {
+            return Err(FilmError::bad(
+                path,
+                "not a PNG, JPEG, WebP, Radiance HDR, OpenEXR or gfilm file",
+            ));
+        }
+    };
+    source.read_to_end(&mut bytes).map_err(io)?;
+    match format {
+        None => read_exr(path, &bytes),
+        Some(format) => read_with_image(path, &bytes, format),
+    }
+}
+
+/// The film as its files show it: opaque unless it was made transparent.
+pub fn film_picture(film: &Film) -> Picture {
+    let mut image = film.resolve();
+    if !film.spec().transparent {
+        image.pixels.iter_mut().for_each(|pixel| pixel[3] = 1.0);
+    }
+    Picture {
+        image,
+        codes: None,
+        film_hash: Some(film.hash()),
+    }
+}
+
+fn check_size(path: &Path, width: u64, height: u64) -> Result<(), FilmError> {
+    let pixels = width.saturating_mul(height);
+    if width == 0 || height == 0 || pixels > MAX_PIXELS {
+        let message =
+            format!("the picture is {width}x{height}; 1 to {MAX_PIXELS} pixels are allowed");
+        return Err(FilmError::bad(path, message));
+    }
+    Ok(())
+}
+
+fn read_with_image(path: &Path, bytes: &[u8], format: ImageFormat) -> Result<Picture, FilmError> {
+    let bad = |e: ImageError| FilmError::bad(path, e.to_string());
+    let (width, height) = ImageReader::with_format(Cursor::new(bytes), format)
+        .into_dimensions()
+        .map_err(bad)?;
+    check_size(path, width.into(), height.into())?;
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(16 * MAX_PIXELS);
+    reader.limits(limits);
+    let decoded = reader.decode().map_err(bad)?;
+    Ok(match decoded {
+        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
+            let pixels = decoded
+                .into_rgba32f()
+                .pixels()
+                .map(|pixel| pixel.0)
+                .collect();
+            Picture {
+                image: Image {
+                    width,
+                    height,
+                    pixels,
+                },
+                codes: None,
+                film_hash: None,
+            }
+        }
+        DynamicImage::ImageLuma16(_)
+        | DynamicImage::ImageLumaA16(_)
+        | DynamicImage::ImageRgb16(_)
+        | DynamicImage::ImageRgba16(_) => {
+            let pixels = decoded
+                .into_rgba16()
+                .pixels()
+                .map(|pixel| pixel.0)
+                .collect();
+            coded_picture(width, height, Codes { bits: 16, pixels })
+        }
+        _ => {
+            let pixels = decoded
+                .into_rgba8()
+                .pixels()
+                .map(|pixel| pixel.0.map(u16::from))
+                .collect();
+            coded_picture(width, height, Codes { bits: 8, pixels })
+        }
+    })
+}
+
+fn coded_picture(width: u32, height: u32, codes: Codes) -> Picture {
+    let max = (1u32 << codes.bits) - 1;
+    let linear: Vec<f64> = (0..=max)
+        .map(|code| srgb_decode(f64::from(code) / f64::from(max)))
+        .collect();
+    let pixel = |[r, g, b, a]: &[u16; 4]| {
+        let alpha = f64::from(*a) / f64::from(max);
+        let colour = |code: u16| (linear[usize::from(code)] * alpha) as f32;
+        [colour(*r), colour(*g), colour(*b), alpha as f32]
+    };
+    let pixels = codes.pixels.iter().map(pixel).collect();
+    Picture {
+        image: Image {
+            width,
+            height,
+            pixels,
+        },
+        codes: Some(codes),
+        film_hash: None,
+    }
+}
+
+fn read_exr(path: &Path, bytes: &[u8]) -> Result<Picture, FilmError> {
+    use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, Vec2};
+    let bad = |e: exr::error::Error| FilmError::bad(path, e.to_string());
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(bad)?;
+    // The same choice as `first_valid_layer` makes below.
+    let has = |header: &exr::meta::header::Header, name: &str| {
+        header.channels.list.iter().any(|c| c.name.eq(name))
+    };
+    let flat = || meta.headers.iter().filter(|header| !header.deep);
+    let coloured = flat().find(|header| ["R", "G", "B"].iter().all(|name| has(header, name)));
+    let Some(header) = coloured.or_else(|| flat().find(|header| has(header, "Y"))) else {
+        return Err(FilmError::bad(
+            path,
+            "no part of this EXR has channels R, G, B or Y",
+        ));
+    };
+    let (width, height) = (header.layer_size.width(), header.layer_size.height());
+    check_size(path, width as u64, height as u64)?;
+    // Every chunk has at least an entry in the offset table and a header of its own.
+    if header.chunk_count.saturating_mul(16) > bytes.len() {
+        return Err(FilmError::bad(
+            path,
+            "truncated EXR: fewer bytes than its chunks need",
+        ));
+    }
+    if header
+        .channels
+        .list
+        .iter()
+        .any(|c| c.sampling != Vec2(1, 1))
+    {
+        return Err(FilmError::bad(
+            path,
+            "subsampled EXR channels (luminance and chroma) are not supported",
+        ));
+    }
+
+    let create = |size: Vec2<usize>| vec![[0.0f32; 4]; size.area()];
+    let set = move |pixels: &mut Vec<[f32; 4]>, at: Vec2<usize>, pixel: [f32; 4]| {
+        pixels[at.1 * width + at.0] = pixel
+    };
+    let pixels = if coloured.is_some() {
+        let channels = exr::prelude::read()
+            .no_deep_data()
+            .largest_resolution_level();
+        let channels = channels.rgba_channels(
+            |size, _| create(size),
+            move |pixels, at, (r, g, b, a): (f32, f32, f32, f32)| set(pixels, at, [r, g, b, a]),
+        );
+        let read = channels
+            .first_valid_layer()
+            .all_attributes()
+            .from_buffered(Cursor::new(bytes));
+        read.map_err(bad)?.layer_data.channel_data.pixels
+    } else {
+        let channels = exr::prelude::read()
+            .no_deep_data()
+            .largest_resolution_level();
+        let channels = channels
+            .specific_channels()
+            .required("Y")
+            .optional("A", 1.0f32)
+            .collect_pixels(
+                |size, _| create(size),
+                move |pixels, at, (y, a): (f32, f32)| set(pixels, at, [y, y, y, a]),
+            );
+        let read = channels
+            .first_valid_layer()
+            .all_attributes()
+            .from_buffered(Cursor::new(bytes));
+        read.map_err(bad)?.layer_data.channel_data.pixels
+    };
+    Ok(Picture {
+        image: Image {
+            width: width as u32,
+            height: height as u32,
+            pixels,
+        },
+        codes: None,
+        film_hash: None,
+    })
+}

@@ -1,0 +1,178 @@
+//! Sizes of the wavefront's queues, and how a job is cut into batches.
+
+use super::device::{DeviceInfo, DeviceKind};
+use super::error::VulkanError;
+use crate::film::Rect;
+use crate::layout::{AovPixel, Batch, FilmSum, Hit, INTEGRATOR_LOCAL, PathState, SceneHeader, ShadowRay};
+use crate::shaders::Fetch;
+use std::ops::Range;
+
+/// Sample slots of a batch where memory allows: enough to fill a large GPU; on CPU devices more only costs cache.
+const BATCH_GPU: u32 = 1 << 17;
+const BATCH_CPU: u32 = 1 << 16;
+
+/// Entries of the queues.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct QueuePlan {
+    /// Sample slots of a batch, and entries of level 0.
+    pub batch: u32,
+    /// Rays of a chunk at most.
+    pub chunk: u32,
+    /// Levels, one per scattering depth.
+    pub levels: u32,
+    /// Shadow rays of a chunk at most.
+    pub shadows: u32,
+}
+
+impl QueuePlan {
+    /// The largest queues of at most `most` slots that the device can hold. `chunk` lowers the rays of a chunk.
+    pub fn new(
+        info: &DeviceInfo,
+        fetch: Fetch,
+        header: &SceneHeader,
+        most: u64,
+        chunk: Option<u32>,
+    ) -> Result<QueuePlan, VulkanError> {
+        let target = if info.kind == DeviceKind::Cpu { BATCH_CPU } else { BATCH_GPU };
+        let mut batch = u64::from(target).min(most.next_power_of_two()) as u32;
+        loop {
+            let plan = Self::of_batch(batch, header, chunk);
+            match plan.too_large(info, fetch) {
+                None => return Ok(plan),
+                Some(_) if batch > 64 => batch /= 2,
+                Some(reason) => return Err(VulkanError::Device(reason)),
+            }
+        }
+    }
+
+    fn of_batch(batch: u32, header: &SceneHeader, chunk: Option<u32>) -> QueuePlan {
+        let lights = header.light_count.max(1);
+        // A shaded path sends one shadow ray to each light; four for each slot is room for most scenes.
+        let fitting = (u64::from(batch) * 4 / u64::from(lights)).clamp(1, batch.into()) as u32;
+        let chunk = fitting.min(chunk.unwrap_or(u32::MAX)).max(1);
+        let levels = if header.integrator == INTEGRATOR_LOCAL { 1 } else { header.max_depth + 1 };
+        QueuePlan { batch, chunk, levels, shadows: chunk.saturating_mul(lights) }
+    }
+
+    /// Entries of levels from 1 on: deepest first, so one chunk's two branches a ray are the most that ever wait.
+    pub fn level_capacity(&self) -> u32 {
+        self.chunk * 2
+    }
+
+    /// Names and bytes of the queues: levels, chunk, hits, shadow rays, slots.
+    pub fn sizes(&self) -> [(&'static str, u64); 5] {
+        let level_entries = u64::from(self.batch) + u64::from(self.levels - 1) * u64::from(self.level_capacity());
+        [
+            ("ray queue", level_entries * size_of::<PathState>() as u64),
+            ("ray chunk", u64::from(self.chunk) * size_of::<PathState>() as u64),
+            ("hits", u64::from(self.chunk) * size_of::<Hit>() as u64),
+            ("shadow ray queue", u64::from(self.shadows) * size_of::<ShadowRay>() as u64),
+            ("sample slots", u64::from(self.batch) * size_of::<FilmSum>() as u64),
+        ]
+    }
+
+    fn too_large(&self, info: &DeviceInfo, fetch: Fetch) -> Option<String> {
+        let limit = binding_limit(info, fetch);
+        let sizes = self.sizes();
+        if let Some((name, size)) = sizes.iter().find(|(_, size)| *size > limit) {
+            return Some(format!("the {name} takes {size} bytes; a buffer of this device holds {limit}"));
+        }
+        let total: u64 = sizes.iter().map(|(_, size)| size).sum();
+        let share = info.limits.heap / 4; // the scene and the film want memory too
+        (total > share).then(|| format!("the queues take {total} bytes; a quarter of the device's memory is {share}"))
+    }
+}
+
+/// Bytes a queue may have: queues are bound as storage buffers and, where kernels fetch so, as texel buffers.
+fn binding_limit(info: &DeviceInfo, fetch: Fetch) -> u64 {
+    let limits = info.limits;
+    let texel = if fetch == Fetch::Texel { limits.texel_elements.saturating_mul(16) } else { u64::MAX };
+    limits.storage_range.min(limits.allocation).min(texel)
+}
+
+/// Cuts `crop` into bands of whole rows whose film (and auxiliary values) one buffer of the device holds.
+pub fn bands(info: &DeviceInfo, crop: Rect, aovs: bool) -> Vec<Rect> {
+    let limits = info.limits;
+    let bytes = limits.storage_range.min(limits.allocation).min(limits.heap / 8);
+    let pixel = if aovs { size_of::<AovPixel>() } else { size_of::<FilmSum>() } as u64;
+    bands_of(crop, bytes / pixel)
+}
+
+fn bands_of(crop: Rect, pixels: u64) -> Vec<Rect> {
+    let rows = (pixels / u64::from(crop.width.max(1))).clamp(1, crop.height.max(1).into()) as u32;
+    (0..crop.height)
+        .step_by(rows as usize)
+        .map(|y| Rect { y: crop.y + y, height: rows.min(crop.height - y), ..crop })
+        .collect()
+}
+
+/// Cuts a band's samples into batches of at most `slots`: several samples of all pixels where the band is small,
+/// pixels of one sample where it is large.
+pub fn batches(band: Rect, samples: Range<u32>, slots: u32) -> impl Iterator<Item = Batch> {
+    let pixels = band.width * band.height;
+    let pixel_step = pixels.div_ceil(pixels.div_ceil(slots).max(1)).max(1);
+    let sample_step = (slots / pixel_step).max(1);
+    samples.clone().step_by(sample_step as usize).flat_map(move |first_sample| {
+        let sample_count = sample_step.min(samples.end - first_sample);
+        (0..pixels).step_by(pixel_step as usize).map(move |first_pixel| {
+            let pixel_count = pixel_step.min(pixels - first_pixel);
+            Batch {
+                crop_x: band.x,
+                crop_y: band.y,
+                crop_width: band.width,
+                crop_height: band.height,
+                first_pixel,
+                pixel_count,
+                first_sample,
+                sample_count,
+                slot_count: pixel_count * sample_count,
+                ..Batch::default()
+            }
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    fn covered(band: Rect, samples: Range<u32>, slots: u32) -> HashSet<(u32, u32)> {
+        let mut seen = HashSet::new();
+        for batch in batches(band, samples, slots) {
+            assert!(batch.slot_count <= slots, "{batch:?}");
+            for slot in 0..batch.slot_count {
+                let pixel = batch.first_pixel + slot % batch.pixel_count;
+                let sample = batch.first_sample + slot / batch.pixel_count;
+                assert!(seen.insert((pixel, sample)), "twice: pixel {pixel}, sample {sample}");
+            }
+        }
+        seen
+    }
+
+    #[test]
+    fn batches_cover_every_sample_of_every_pixel_once() {
+        let band = Rect { x: 3, y: 5, width: 7, height: 11 };
+        for slots in [1, 2, 64, 76, 77, 78, 154, 1000] {
+            let seen = covered(band, 4..13, slots);
+            assert_eq!(seen.len(), 77 * 9, "slots {slots}");
+            assert!(seen.iter().all(|(pixel, sample)| *pixel < 77 && (4..13).contains(sample)));
+        }
+    }
+
+    #[test]
+    fn bands_are_whole_rows_that_cover_the_crop() {
+        let crop = Rect { x: 2, y: 10, width: 8, height: 5 };
+        let rows: Vec<_> = bands_of(crop, 17).iter().map(|band| (band.x, band.y, band.width, band.height)).collect();
+        assert_eq!(rows, [(2, 10, 8, 2), (2, 12, 8, 2), (2, 14, 8, 1)]);
+    }
+
+    #[test]
+    fn many_lights_make_chunks_small_instead_of_losing_shadow_rays() {
+        let header = SceneHeader { light_count: 1000, max_depth: 3, integrator: 1, ..SceneHeader::default() };
+        let plan = QueuePlan::of_batch(1 << 16, &header, None);
+        assert_eq!((plan.chunk, plan.shadows, plan.levels), (262, 262_000, 4));
+        let plan = QueuePlan::of_batch(64, &SceneHeader { light_count: 1_000_000, ..header }, None);
+        assert_eq!((plan.chunk, plan.shadows), (1, 1_000_000));
+    }
+}

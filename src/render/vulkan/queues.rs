@@ -1,0 +1,176 @@
+//! The wavefront on the device: kernels, queues, and the commands of a batch.
+
+use super::context::Context;
+use super::error::VulkanError;
+use super::kernel::{Bound, Kernel, WORKGROUP};
+use super::memory::{Buffer, Place};
+use super::plan::QueuePlan;
+use super::record::Recorder;
+use super::scene::SceneBuffers;
+use crate::layout::{Batch, Control, DispatchArguments};
+use crate::shaders;
+use std::mem::offset_of;
+
+/// The wavefront's kernels in the order in which they run.
+struct Stages<T> {
+    generate: T,
+    schedule: T,
+    extend: T,
+    shadow: T,
+    shade: T,
+    resolve: T,
+}
+
+impl<T> Stages<T> {
+    fn try_map<U>(&self, mut f: impl FnMut(&T) -> Result<U, VulkanError>) -> Result<Stages<U>, VulkanError> {
+        Ok(Stages {
+            generate: f(&self.generate)?,
+            schedule: f(&self.schedule)?,
+            extend: f(&self.extend)?,
+            shadow: f(&self.shadow)?,
+            shade: f(&self.shade)?,
+            resolve: f(&self.resolve)?,
+        })
+    }
+}
+
+const NAMES: Stages<&str> = Stages {
+    generate: "generate",
+    schedule: "schedule",
+    extend: "extend",
+    shadow: "shadow",
+    shade: "shade",
+    resolve: "resolve",
+};
+
+/// The compiled kernels of a scene.
+pub struct Kernels(Stages<Kernel>);
+
+impl Kernels {
+    /// Compiles for the scene's way of fetching, its pages, and a traversal stack of `stack_depth` entries.
+    pub fn new(context: &Context, scene: &SceneBuffers, stack_depth: u32) -> Result<Kernels, VulkanError> {
+        let mut constants = vec![(0, WORKGROUP), (5, stack_depth)];
+        constants.extend(scene.constants());
+        let kernels = NAMES.try_map(|name| {
+            let words = shaders::kernel(name, scene.fetch())
+                .ok_or_else(|| VulkanError::Device(format!("this program was built without the kernel {name}")))?;
+            context.kernel(name, words, &constants, size_of::<Batch>())
+        })?;
+        Ok(Kernels(kernels))
+    }
+}
+
+/// Queues, film and the kernels bound to them.
+pub struct Queues {
+    pub plan: QueuePlan,
+    pub control: Buffer,
+    pub chunk: Buffer,
+    pub hits: Buffer,
+    pub film: Buffer,
+    pub aovs: Buffer,
+    /// `Control` for the host, after each submission.
+    pub control_copy: Buffer,
+    stages: Stages<Bound>,
+}
+
+impl Queues {
+    /// Allocates queues of `plan`'s sizes and binds everything.
+    pub fn new(
+        context: &Context,
+        kernels: &Kernels,
+        scene: &SceneBuffers,
+        plan: QueuePlan,
+        film: Buffer,
+        aovs: Buffer,
+    ) -> Result<Queues, VulkanError> {
+        let [levels, chunk, hits, shadows, slots] =
+            plan.sizes().map(|(name, size)| context.buffer(name, size, Place::Device));
+        let (levels, chunk, hits, shadows, slots) = (levels?, chunk?, hits?, shadows?, slots?);
+        let control = context.buffer("control record", size_of::<Control>() as u64, Place::Device)?;
+        let control_copy = context.buffer("copy of the control record", control.size(), Place::Readback)?;
+        // Bindings of set 1 (`shaders/kernels/bindings.glsl`).
+        let find = |set: u32, binding: u32| match (set, binding) {
+            (0, _) => scene.find(binding),
+            (1, 0) => vec![control.clone()],
+            (1, 1 | 8) => vec![levels.clone()],
+            (1, 2 | 9) => vec![chunk.clone()],
+            (1, 3 | 10) => vec![hits.clone()],
+            (1, 4 | 11) => vec![shadows.clone()],
+            (1, 5) => vec![slots.clone()],
+            (1, 6) => vec![film.clone()],
+            (1, 7) => vec![aovs.clone()],
+            _ => Vec::new(),
+        };
+        let stages = kernels.0.try_map(|kernel| Bound::new(kernel, find))?;
+        Ok(Queues { plan, control, chunk, hits, film, aovs, control_copy, stages })
+    }
+
+    /// The control record at the start of a job.
+    pub fn fresh_control(&self) -> Control {
+        Control {
+            level0_capacity: self.plan.batch,
+            level_capacity: self.plan.level_capacity(),
+            shadow_capacity: self.plan.shadows,
+            ..bytemuck::Zeroable::zeroed()
+        }
+    }
+
+    /// Records: every kernel once over nothing, so that a driver which compiles at the first dispatch does it now.
+    pub fn record_warm_up<'r>(&'r self, r: &Recorder<'r>) {
+        let nothing = Batch { crop_width: 1, pixel_count: 1, ..Batch::default() };
+        r.update(&self.control, 0, bytemuck::bytes_of(&self.fresh_control()));
+        let Stages { generate, schedule, extend, shadow, shade, resolve } = &self.stages;
+        for bound in [generate, schedule, extend, shadow, shade, resolve] {
+            r.barrier();
+            r.dispatch(bound, bytemuck::bytes_of(&nothing), 1);
+        }
+    }
+
+    /// Records: the batch's camera rays.
+    pub fn record_generate<'r>(&'r self, r: &Recorder<'r>, batch: &Batch) {
+        r.update(&self.control, offset_of!(Control, level_count) as u64, bytemuck::bytes_of(&batch.slot_count));
+        r.dispatch(&self.stages.generate, bytemuck::bytes_of(batch), batch.slot_count.div_ceil(WORKGROUP));
+        r.barrier();
+    }
+
+    /// Records: how many rays the next chunks may hold.
+    pub fn record_chunk_limit<'r>(&'r self, r: &Recorder<'r>, limit: u32) {
+        r.update(&self.control, offset_of!(Control, chunk_limit) as u64, bytemuck::bytes_of(&limit));
+        r.barrier();
+    }
+
+    /// Records: one round, with a timestamp after each stage (`pace::STAGES`).
+    pub fn record_round<'r>(&'r self, r: &Recorder<'r>, batch: &Batch) {
+        const _: () = assert!(size_of::<DispatchArguments>() == 12, "the arguments of vkCmdDispatchIndirect");
+        let push = bytemuck::bytes_of(batch);
+        r.dispatch(&self.stages.schedule, push, 1);
+        r.timestamp();
+        r.barrier();
+        r.dispatch_indirect(&self.stages.extend, push, &self.control, offset_of!(Control, extend) as u64);
+        r.timestamp();
+        r.dispatch_indirect(&self.stages.shadow, push, &self.control, offset_of!(Control, shadow) as u64);
+        r.timestamp();
+        r.barrier();
+        r.dispatch_indirect(&self.stages.shade, push, &self.control, offset_of!(Control, shade) as u64);
+        r.timestamp();
+        r.barrier();
+    }
+
+    /// Records: adds a finished batch to the film.
+    pub fn record_resolve<'r>(&'r self, r: &Recorder<'r>, batch: &Batch) {
+        r.dispatch(&self.stages.resolve, bytemuck::bytes_of(batch), batch.slot_count.div_ceil(WORKGROUP));
+        r.barrier();
+    }
+
+    /// Records: the control record's way to the host; `read_control` reads it afterwards.
+    pub fn record_control_copy<'r>(&'r self, r: &Recorder<'r>) {
+        r.copy(&self.control, 0, &self.control_copy, 0, size_of::<Control>() as u64);
+    }
+
+    /// The control record as of the last submission.
+    pub fn read_control(&self) -> Control {
+        let mut control: Control = bytemuck::Zeroable::zeroed();
+        self.control_copy.read(bytemuck::bytes_of_mut(&mut control));
+        control
+    }
+}

@@ -1,0 +1,249 @@
+//! The Vulkan backend: batches, rounds, and the way of the sums into the film.
+
+use super::context::Context;
+use super::device::DeviceChoice;
+use super::error::VulkanError;
+use super::memory::{Buffer, Place};
+use super::pace::{self, Pace};
+use super::plan::{self, QueuePlan};
+use super::queues::{Kernels, Queues};
+use super::scene::{FetchChoice, SceneBuffers};
+use super::validation::Messages;
+use crate::bake::SceneData;
+use crate::film::{Film, Rect};
+use crate::layout::{AovPixel, Batch, Control, FilmSum, SceneHeader};
+use crate::render::{Bounce, Counters, Job, RenderError, Renderer, Watch};
+use crate::shaders::Fetch;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// What to render on and how.
+#[derive(Clone, Debug, Default)]
+pub struct VulkanOptions {
+    /// Index, part of the name, or kind; `None` for the best there is (`DeviceChoice`).
+    pub device: Option<String>,
+    pub fetch: FetchChoice,
+    /// Rays of a chunk at most. Pictures do not depend on it.
+    pub chunk: Option<u32>,
+    /// Bytes of a page of the scene at most. Pictures do not depend on it.
+    pub page_limit: Option<u64>,
+    /// Ask for the validation layers, as `GONIO_VALIDATION=1` does.
+    pub validate: bool,
+}
+
+/// The Vulkan backend.
+pub struct VulkanRenderer {
+    pub(super) context: Context,
+    header: SceneHeader,
+    scene: SceneBuffers,
+    kernels: Kernels,
+    chunk: Option<u32>,
+    /// Made for the first job, and again for a larger one.
+    queues: Option<Queues>,
+    pace: Pace,
+}
+
+/// What a job counted, and the control record it was last read from.
+struct Tally {
+    last: Control,
+    counters: Counters,
+    nan_count: u64,
+    clamped_count: u64,
+}
+
+impl Tally {
+    fn new(control: Control) -> Tally {
+        Tally { last: control, counters: Counters::default(), nan_count: 0, clamped_count: 0 }
+    }
+
+    /// Reads the record after a submission; the result is the rounds that had work.
+    fn read(&mut self, queues: &Queues) -> Result<u32, VulkanError> {
+        let control = queues.read_control();
+        if control.overflows != 0 {
+            return Err(VulkanError::Device(format!(
+                "{} rays found a queue full ({:?}): this is a bug of gonio",
+                control.overflows, queues.plan
+            )));
+        }
+        // 32-bit counters may wrap in a long job; differences do not.
+        self.nan_count += u64::from(control.nan_count.wrapping_sub(self.last.nan_count));
+        self.clamped_count += u64::from(control.clamped_count.wrapping_sub(self.last.clamped_count));
+        let wide = |words: [u32; 2]| u64::from(words[0]) | u64::from(words[1]) << 32;
+        self.counters.closest_rays = wide(control.closest_rays);
+        self.counters.shadow_rays = wide(control.shadow_rays);
+        let worked = control.rounds.wrapping_sub(self.last.rounds);
+        self.last = control;
+        Ok(worked)
+    }
+}
+
+impl VulkanRenderer {
+    /// Opens the device, uploads the scene and compiles the kernels.
+    pub fn new(data: &SceneData, options: VulkanOptions) -> Result<VulkanRenderer, RenderError> {
+        let Ok(choice) = options.device.as_deref().unwrap_or("auto").parse::<DeviceChoice>();
+        let mut context = Context::new(&choice, options.validate)?;
+        let scene = SceneBuffers::upload(&mut context, data, options.fetch, options.page_limit)?;
+        let kernels = Kernels::new(&context, &scene, data.stack_depth)?;
+        let chunk = options.chunk;
+        Ok(VulkanRenderer { context, header: data.header, scene, kernels, chunk, queues: None, pace: Pace::new(1) })
+    }
+
+    /// How kernels read the scene.
+    pub fn fetch(&self) -> Fetch {
+        self.scene.fetch()
+    }
+
+    /// Pages of nodes, triangles and data.
+    pub fn page_counts(&self) -> [usize; 3] {
+        self.scene.page_counts()
+    }
+
+    /// What the validation layers have to say; also after the renderer is gone.
+    pub fn messages(&self) -> Arc<Messages> {
+        self.context.messages()
+    }
+
+    /// Queues for `slots` samples (or as many as fit) and a film of `pixels`.
+    pub(super) fn ready(&mut self, slots: u64, pixels: u64) -> Result<(), VulkanError> {
+        let film_bytes = pixels * size_of::<FilmSum>() as u64;
+        let aov_bytes = if self.header.aovs != 0 { pixels * size_of::<AovPixel>() as u64 } else { 0 };
+        let plan = QueuePlan::new(self.context.info(), self.scene.fetch(), &self.header, slots, self.chunk)?;
+        if let Some(queues) = &self.queues
+            && queues.plan.batch >= plan.batch
+            && queues.film.size() >= film_bytes
+            && queues.aovs.size() >= aov_bytes
+        {
+            return Ok(());
+        }
+        let batch = self.queues.as_ref().map_or(0, |queues| queues.plan.batch);
+        let plan = if batch > plan.batch { self.queues.as_ref().map_or(plan, |queues| queues.plan) } else { plan };
+        self.queues = None; // its memory first
+        let film = self.context.buffer("film", film_bytes, Place::Device)?;
+        let aovs = self.context.buffer("auxiliary values", aov_bytes, Place::Device)?;
+        let queues = Queues::new(&self.context, &self.kernels, &self.scene, plan, film, aovs)?;
+        self.context.submit("warming up", |r| queues.record_warm_up(r))?;
+        self.pace = Pace::new(plan.chunk);
+        self.queues = Some(queues);
+        Ok(())
+    }
+
+    /// All samples of one band, its film read back.
+    fn run_band(&mut self, band: Rect, job: &Job, tally: &mut Tally, watch: &Watch) -> Result<(), RenderError> {
+        let queues = self.queues.as_ref().expect("made ready by the caller");
+        self.context.submit("clearing the film", |r| {
+            r.clear(&queues.film);
+            r.clear(&queues.aovs);
+        })?;
+        let mut finished: Option<Batch> = None;
+        for batch in plan::batches(band, job.samples.clone(), queues.plan.batch) {
+            run_batch(&mut self.context, queues, &mut self.pace, tally, batch, finished, watch)?;
+            (watch.advance)(batch.slot_count.into());
+            finished = Some(batch);
+        }
+        if let Some(batch) = finished {
+            self.context.submit("resolving the last batch", |r| {
+                queues.record_resolve(r, &batch);
+                queues.record_control_copy(r);
+            })?;
+            tally.read(queues)?;
+        }
+        Ok(())
+    }
+
+    fn download<T: bytemuck::Pod>(&mut self, from: &Buffer, count: usize) -> Result<Vec<T>, VulkanError> {
+        let bytes = self.context.download(from, 0, (count * size_of::<T>()) as u64)?;
+        Ok(bytemuck::pod_collect_to_vec(&bytes))
+    }
+
+    /// Adds a band's sums to the film.
+    fn add_to_film(&mut self, band: Rect, job: &Job, film: &mut Film) -> Result<(), VulkanError> {
+        let queues = self.queues.as_ref().expect("made ready by the caller");
+        let (sums, aovs) = (queues.film.clone(), queues.aovs.clone());
+        film.add_sums(band, &self.download::<FilmSum>(&sums, band.area())?);
+        if self.header.aovs != 0 {
+            film.add_aovs(band, &self.download::<AovPixel>(&aovs, band.area())?, job.samples.contains(&0));
+        }
+        Ok(())
+    }
+}
+
+/// Runs one batch to its end: submissions of some rounds each until nothing is pending. `finished` is the batch before,
+/// which the first submission resolves.
+fn run_batch(
+    context: &mut Context,
+    queues: &Queues,
+    pace: &mut Pace,
+    tally: &mut Tally,
+    batch: Batch,
+    finished: Option<Batch>,
+    watch: &Watch,
+) -> Result<(), RenderError> {
+    let (mut recorded, mut worked) = (0, 0);
+    loop {
+        if watch.abort.load(Ordering::Relaxed) {
+            return Err(RenderError::Aborted);
+        }
+        let (rounds, limit) = (pace.rounds(recorded), pace.chunk_limit());
+        let submission = context.submit("tracing a batch", |r| {
+            r.timestamp();
+            queues.record_chunk_limit(r, limit);
+            if recorded == 0 {
+                if let Some(finished) = finished {
+                    queues.record_resolve(r, &finished);
+                }
+                queues.record_generate(r, &batch);
+            }
+            r.timestamp();
+            for _ in 0..rounds {
+                queues.record_round(r, &batch);
+            }
+            queues.record_control_copy(r);
+        })?;
+        let now = tally.read(queues)?;
+        let (lead, times) = pace::split(&submission.times);
+        tally.counters.other_s += lead;
+        for round in &times {
+            tally.counters.other_s += round.schedule;
+            tally.counters.extend_s += round.extend;
+            tally.counters.shadow_s += round.shadow;
+            tally.counters.shade_s += round.shade;
+        }
+        pace.learn(&submission, &times, now, recorded == 0 && batch.slot_count >= limit);
+        recorded += rounds;
+        worked += now;
+        if tally.last.done != 0 {
+            pace.batch_ended(worked);
+            return Ok(());
+        }
+    }
+}
+
+impl Renderer for VulkanRenderer {
+    fn name(&self) -> String {
+        self.context.info().to_string()
+    }
+
+    fn accumulate(&mut self, job: &Job, film: &mut Film, watch: &Watch) -> Result<Counters, RenderError> {
+        let bands = plan::bands(self.context.info(), job.crop, self.header.aovs != 0);
+        let pixels = bands.iter().map(|band| band.area() as u64).max().unwrap_or(0);
+        let samples = u64::from(job.samples.end.saturating_sub(job.samples.start));
+        self.ready(pixels * samples, pixels)?;
+        let queues = self.queues.as_ref().expect("just made ready");
+        let control = queues.fresh_control();
+        let buffer = queues.control.clone();
+        self.context.upload(&buffer, 0, bytemuck::bytes_of(&control))?;
+        let mut tally = Tally::new(control);
+        for band in bands {
+            self.run_band(band, job, &mut tally, watch)?;
+            self.add_to_film(band, job, film)?;
+        }
+        film.record(job.samples.clone(), tally.nan_count, tally.clamped_count);
+        Ok(tally.counters)
+    }
+
+    fn inspect(&mut self, x: u32, y: u32, sample: u32) -> Result<Vec<Bounce>, RenderError> {
+        self.ready(1, 1)?;
+        let queues = self.queues.as_ref().expect("just made ready");
+        Ok(super::inspect::run(&mut self.context, queues, x, y, sample)?)
+    }
+}

@@ -1,0 +1,224 @@
+//! The scene on the device: header, and three sets of pages (nodes, triangles, everything else).
+
+use super::context::Context;
+use super::device::{DeviceInfo, DeviceKind};
+use super::error::VulkanError;
+use super::memory::{Buffer, Place};
+use crate::bake::SceneData;
+use crate::shaders::Fetch;
+
+/// Pages a set may have (`shaders/kernels/bindings.glsl`).
+const MAX_PAGES: u64 = 8;
+/// Bytes of the word in which pages are fetched.
+const WORD: u64 = 16;
+const SET_NAMES: [&str; 3] = ["BVH nodes", "triangles", "scene data"];
+
+/// How kernels read the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FetchChoice {
+    /// Texel buffers where the device is a CPU, storage buffers elsewhere; the other where the first cannot hold the scene.
+    #[default]
+    Auto,
+    Texel,
+    Storage,
+}
+
+/// How the sets are cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct PagePlan {
+    /// log2 of the words of a page.
+    shift: u32,
+    /// Pages of each set, 1 to `MAX_PAGES`.
+    counts: [u64; 3],
+}
+
+/// Cuts sets of `words` words into pages of at most `limit` bytes; the error names array, size and limit.
+fn plan_pages(words: [u64; 3], limit: u64) -> Result<PagePlan, String> {
+    let page = (limit / WORD).max(1);
+    let shift = page.ilog2().min(31);
+    let mut counts = [1; 3];
+    for ((count, words), name) in counts.iter_mut().zip(words).zip(SET_NAMES) {
+        // A set that fits as a whole is not cut, though the limit is no power of two.
+        if words > page {
+            *count = words.div_ceil(1 << shift);
+        }
+        if *count > MAX_PAGES || words > u64::from(u32::MAX) {
+            let most = (MAX_PAGES << shift).min(u64::from(u32::MAX)) * WORD;
+            return Err(format!(
+                "{name} take {} bytes; {MAX_PAGES} pages of this device hold {most} ({limit} bytes each at most)",
+                words * WORD
+            ));
+        }
+    }
+    Ok(PagePlan { shift, counts })
+}
+
+/// The heap's arrays: place of the first byte's word, and the bytes.
+fn heap_parts(data: &SceneData) -> [(u32, &[u8]); 9] {
+    let header = &data.header;
+    [
+        (header.first_instance, bytemuck::cast_slice(&data.instances)),
+        (header.first_top_instance, bytemuck::cast_slice(&data.top_instances)),
+        (header.first_face, bytemuck::cast_slice(&data.faces)),
+        (header.first_vertex, bytemuck::cast_slice(&data.vertices)),
+        (header.first_material, bytemuck::cast_slice(&data.materials)),
+        (header.first_light, bytemuck::cast_slice(&data.lights)),
+        (header.first_texture, bytemuck::cast_slice(&data.textures)),
+        (header.first_texel, bytemuck::cast_slice(&data.texels)),
+        (header.first_table, bytemuck::cast_slice(&data.tables)),
+    ]
+}
+
+/// Largest page in bytes under a way of fetching.
+fn page_bytes(info: &DeviceInfo, fetch: Fetch, page_limit: Option<u64>) -> u64 {
+    let binding = match fetch {
+        Fetch::Texel => info.limits.texel_elements.saturating_mul(WORD),
+        Fetch::Storage => info.limits.storage_range,
+    };
+    binding.min(info.limits.allocation).min(page_limit.unwrap_or(u64::MAX))
+}
+
+/// Chooses the way of fetching and the pages.
+fn choose(
+    info: &DeviceInfo,
+    choice: FetchChoice,
+    words: [u64; 3],
+    page_limit: Option<u64>,
+) -> Result<(Fetch, PagePlan), VulkanError> {
+    let order: &[Fetch] = match choice {
+        FetchChoice::Auto if info.kind == DeviceKind::Cpu => &[Fetch::Texel, Fetch::Storage],
+        FetchChoice::Auto => &[Fetch::Storage, Fetch::Texel],
+        FetchChoice::Texel => &[Fetch::Texel],
+        FetchChoice::Storage => &[Fetch::Storage],
+    };
+    let mut reasons = Vec::new();
+    for &fetch in order {
+        let (name, can) = match fetch {
+            Fetch::Texel => ("texel", info.can_fetch_texel()),
+            Fetch::Storage => ("storage", info.can_fetch_storage()),
+        };
+        if !can {
+            reasons.push(format!("{} cannot bind enough {name} buffers", info.name));
+            continue;
+        }
+        match plan_pages(words, page_bytes(info, fetch, page_limit)) {
+            Ok(plan) => return Ok((fetch, plan)),
+            Err(reason) => reasons.push(format!("{name} buffers: {reason}")),
+        }
+    }
+    Err(VulkanError::Device(format!("the scene does not fit: {}", reasons.join("; "))))
+}
+
+/// The scene's buffers.
+pub struct SceneBuffers {
+    header: Buffer,
+    sets: [Vec<Buffer>; 3],
+    shift: u32,
+    fetch: Fetch,
+}
+
+impl SceneBuffers {
+    /// Uploads the scene. `page_limit` lowers the bytes of a page, for tests.
+    pub fn upload(
+        context: &mut Context,
+        data: &SceneData,
+        choice: FetchChoice,
+        page_limit: Option<u64>,
+    ) -> Result<SceneBuffers, VulkanError> {
+        let nodes: &[u8] = bytemuck::cast_slice(&data.nodes);
+        let triangles: &[u8] = bytemuck::cast_slice(&data.triangles);
+        let heap = heap_parts(data);
+        let sets: [&[(u32, &[u8])]; 3] = [&[(0, nodes)], &[(0, triangles)], &heap];
+        let end = |parts: &[(u32, &[u8])]| {
+            parts.iter().map(|(first, bytes)| u64::from(*first) + (bytes.len() as u64).div_ceil(WORD)).max()
+        };
+        let words = sets.map(|parts| end(parts).unwrap_or(0));
+        let (fetch, plan) = choose(context.info(), choice, words, page_limit)?;
+
+        let header = context.buffer("scene header", size_of_val(&data.header) as u64, Place::Device)?;
+        context.upload(&header, 0, bytemuck::bytes_of(&data.header))?;
+        let mut buffers = [Vec::new(), Vec::new(), Vec::new()];
+        for (set, buffers) in buffers.iter_mut().enumerate() {
+            let page_words = if plan.counts[set] == 1 { words[set] } else { 1 << plan.shift };
+            for page in 0..plan.counts[set] {
+                let size = page_words.min(words[set] - page * page_words) * WORD;
+                let name = format!("{} (page {} of {})", SET_NAMES[set], page + 1, plan.counts[set]);
+                buffers.push(context.buffer(&name, size, Place::Device)?);
+            }
+            for (first, bytes) in sets[set] {
+                upload_part(context, buffers, page_words * WORD, u64::from(*first) * WORD, bytes)?;
+            }
+        }
+        Ok(SceneBuffers { header, sets: buffers, shift: plan.shift, fetch })
+    }
+
+    pub fn fetch(&self) -> Fetch {
+        self.fetch
+    }
+
+    /// Pages of nodes, triangles and data.
+    pub fn page_counts(&self) -> [usize; 3] {
+        self.sets.each_ref().map(Vec::len)
+    }
+
+    /// Pages of one set: 0 nodes, 1 triangles, 2 data.
+    pub fn pages(&self, set: usize) -> &[Buffer] {
+        &self.sets[set]
+    }
+
+    /// Specialisation constants 1 to 4.
+    pub fn constants(&self) -> [(u32, u32); 4] {
+        let [nodes, triangles, data] = self.page_counts().map(|count| count as u32);
+        [(1, nodes), (2, triangles), (3, data), (4, self.shift)]
+    }
+
+    /// The buffers of a binding of set 0.
+    pub fn find(&self, binding: u32) -> Vec<Buffer> {
+        match binding {
+            0 => vec![self.header.clone()],
+            1..=3 => self.sets[binding as usize - 1].clone(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// Writes `bytes` from byte `at` of a set on, across its pages of `page` bytes.
+fn upload_part(
+    context: &mut Context,
+    pages: &[Buffer],
+    page: u64,
+    mut at: u64,
+    mut bytes: &[u8],
+) -> Result<(), VulkanError> {
+    while !bytes.is_empty() {
+        let within = at % page;
+        let (now, later) = bytes.split_at((page - within).min(bytes.len() as u64) as usize);
+        context.upload(&pages[(at / page) as usize], within, now)?;
+        at += now.len() as u64;
+        bytes = later;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_that_fits_is_not_cut_though_the_limit_is_no_power_of_two() {
+        let plan = plan_pages([100, 3, 0], 100 * 16).unwrap();
+        assert_eq!(plan, PagePlan { shift: 6, counts: [1, 1, 1] });
+    }
+
+    #[test]
+    fn pages_are_powers_of_two_within_the_limit() {
+        let plan = plan_pages([101, 64, 512], 100 * 16 + 5).unwrap();
+        assert_eq!(plan, PagePlan { shift: 6, counts: [2, 1, 8] });
+    }
+
+    #[test]
+    fn a_set_of_nine_pages_is_refused_with_its_name_and_size() {
+        let error = plan_pages([1, 513, 1], 64 * 16).unwrap_err();
+        assert_eq!(error, "triangles take 8208 bytes; 8 pages of this device hold 8192 (1024 bytes each at most)");
+    }
+}

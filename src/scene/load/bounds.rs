@@ -1,0 +1,161 @@
+//! How large a scene is, and whether one stands in it or before it.
+
+use crate::scene::{Geometry, Object, Scene};
+use glam::DVec3;
+
+/// Points computed exactly; beyond this the corners of the meshes' boxes stand for them.
+const EXACT_MAX: usize = 1 << 23;
+
+/// The extent of all objects, in world space.
+pub(super) struct Bounds {
+    points: Vec<DVec3>,
+    low: DVec3,
+    high: DVec3,
+    radius: f64,
+    /// Volume enclosed by the triangles, as seen from the centre; negative where they face inwards.
+    volume: f64,
+}
+
+impl Bounds {
+    pub fn of(scene: &Scene) -> Self {
+        let mut points = Vec::new();
+        for object in &scene.objects {
+            add_points(scene, object, &mut points);
+        }
+        points.retain(|p| p.is_finite());
+        let low = points
+            .iter()
+            .copied()
+            .reduce(DVec3::min)
+            .unwrap_or(DVec3::ZERO);
+        let high = points
+            .iter()
+            .copied()
+            .reduce(DVec3::max)
+            .unwrap_or(DVec3::ZERO);
+        let centre = (low + high) * 0.5;
+        let radius = points
+            .iter()
+            .map(|p| (*p - centre).length())
+            .fold(0.0, f64::max);
+        // What is smaller than the rounding of its place cannot be looked at from its own distance; a single point has none.
+        let radius = radius.max(centre.abs().max_element() * 1e-5);
+        let radius = if radius > 0.0 { radius } else { 1.0 };
+        Self {
+            points,
+            low,
+            high,
+            radius,
+            volume: signed_volume(scene, centre),
+        }
+    }
+
+    pub fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
+        self.points.iter().copied()
+    }
+
+    pub fn centre(&self) -> DVec3 {
+        (self.low + self.high) * 0.5
+    }
+
+    pub fn low(&self) -> DVec3 {
+        self.low
+    }
+
+    pub fn size(&self) -> DVec3 {
+        self.high - self.low
+    }
+
+    /// Of the sphere around the centre, greater than 0.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Walls that face inwards enclose a negative volume; an object's faces a positive one.
+    pub fn is_room(&self) -> bool {
+        let size = self.size();
+        self.volume < -0.2 * (size.x * size.y * size.z)
+            && size.min_element() > 0.05 * size.max_element()
+    }
+
+    /// Objects stand on something; landscapes are ground, and pictures hang.
+    pub fn wants_ground(&self) -> bool {
+        let size = self.size();
+        !self.points.is_empty() && size.min_element() > 0.05 * size.max_element()
+    }
+}
+
+fn add_points(scene: &Scene, object: &Object, points: &mut Vec<DVec3>) {
+    let world = |p: DVec3| object.transform.0.transform_point3(p);
+    let corners = |low: DVec3, high: DVec3| {
+        (0..8).map(move |i| {
+            let pick = |axis: u32, l: f64, h: f64| if i >> axis & 1 == 0 { l } else { h };
+            DVec3::new(
+                pick(0, low.x, high.x),
+                pick(1, low.y, high.y),
+                pick(2, low.z, high.z),
+            )
+        })
+    };
+    match object.geometry {
+        Geometry::Sphere => points.extend(corners(DVec3::NEG_ONE, DVec3::ONE).map(world)),
+        Geometry::Mesh(id) => {
+            let positions = &scene.meshes[id.0 as usize].positions;
+            let mut local = positions.iter().map(|p| p.as_dvec3());
+            if points.len() + positions.len() <= EXACT_MAX {
+                points.extend(local.map(world));
+            } else if let Some(first) = local.next() {
+                let (low, high) =
+                    local.fold((first, first), |(low, high), p| (low.min(p), high.max(p)));
+                points.extend(corners(low, high).map(world));
+            }
+        }
+    }
+}
+
+/// The triangles of all objects in world space, at most `EXACT_MAX`.
+fn triangles(scene: &Scene) -> impl Iterator<Item = [DVec3; 3]> + '_ {
+    scene
+        .objects
+        .iter()
+        .filter_map(|object| match object.geometry {
+            Geometry::Mesh(id) => Some((object, &scene.meshes[id.0 as usize])),
+            Geometry::Sphere => None,
+        })
+        .flat_map(|(object, mesh)| {
+            let mirrored = object.transform.determinant() < 0.0;
+            mesh.triangles.iter().map(move |corners| {
+                let [a, b, c] = corners.map(|i| {
+                    object
+                        .transform
+                        .0
+                        .transform_point3(mesh.positions[i as usize].as_dvec3())
+                });
+                if mirrored { [a, c, b] } else { [a, b, c] }
+            })
+        })
+        .take(EXACT_MAX)
+}
+
+fn signed_volume(scene: &Scene, centre: DVec3) -> f64 {
+    triangles(scene)
+        .map(|[a, b, c]| (a - centre).dot((b - centre).cross(c - centre)) / 6.0)
+        .sum()
+}
+
+/// Distance from `origin` along `way` (unit) to the first triangle. None: nothing is there.
+/// Möller and Trumbore 1997, both sides.
+pub(super) fn free_distance(scene: &Scene, origin: DVec3, way: DVec3) -> Option<f64> {
+    let hit = |[a, b, c]: [DVec3; 3]| {
+        let (e1, e2, s) = (b - a, c - a, origin - a);
+        let p = way.cross(e2);
+        let det = e1.dot(p);
+        if det == 0.0 {
+            return None;
+        }
+        let q = s.cross(e1);
+        let (u, v, t) = (s.dot(p) / det, way.dot(q) / det, e2.dot(q) / det);
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some(t)
+    };
+    triangles(scene).filter_map(hit).reduce(f64::min)
+}

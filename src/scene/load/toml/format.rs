@@ -1,0 +1,248 @@
+//! The tables of the format (see `keys`), in the order of scenes/README.md.
+
+use super::keys::{Key, Kind, LARGEST, Range, Section, key};
+
+const ONE_OR_MORE: &str = "one or more tables";
+
+/// The whole file.
+pub static SCENE: Section = Section {
+    name: "scene",
+    noun: "the scene",
+    keys: &[
+        key("render", Kind::Special("a table"), "all defaults", "How to compute the picture: `[render]`"),
+        key("film", Kind::Special("a table"), "all defaults", "The image plane and how it is displayed: `[film]`"),
+        key("camera", Kind::Special("a table"), "required", "Where the picture is taken from: `[camera]`"),
+        key("background", Kind::Special("a table"), "black", "What rays that leave the scene see: `[background]`"),
+        key("material", Kind::Special(ONE_OR_MORE), "none", "Surfaces: `[[material]]`"),
+        key("object", Kind::Special(ONE_OR_MORE), "required", "Things: `[[object]]`"),
+        key("light", Kind::Special(ONE_OR_MORE), "none", "Lights: `[[light]]`"),
+    ],
+};
+
+pub static RENDER: Section = Section {
+    name: "[render]",
+    noun: "[render]",
+    keys: &[
+        key("integrator", Kind::Choice(&["local", "whitted"]), "`\"whitted\"`", "`local`: the illumination model alone, with shadows. `whitted`: mirror and refracted rays as well (Whitted 1980)"),
+        key("samples", Kind::Integer { min: 1, max: 1 << 24 }, "16", "Samples a pixel"),
+        key("seed", Kind::Integer { min: 0, max: u32::MAX as i64 }, "0", "Another seed, another noise"),
+        key("sampler", Kind::Choice(&["sobol", "stratified", "independent"]), "`\"sobol\"`", "Owen-scrambled Sobol' points (Burley 2020), jittered strata, or plain random numbers"),
+        key("max_depth", Kind::Integer { min: 0, max: 64 }, "8", "Mirror and refraction events a path may have"),
+        key("min_weight", Kind::Number(Range::UNIT), "0.003", "Branches that add less than this share to the pixel are cut"),
+        key("shadows", Kind::Boolean, "true", "Trace shadow rays"),
+        key("intensity", Kind::Choice(&["lecture", "radiometric"]), "`\"radiometric\"`", "What the `intensity` of lights means. `radiometric`: W/sr (directional: W/m²). `lecture`: the I_p of textbooks, that divided by π, so that a white surface facing the light shows I_p"),
+        key("ambient", Kind::Color(Range::NOT_NEGATIVE), "0", "I_a, the radiance of the ambient term k_a I_a O_d"),
+    ],
+};
+
+pub static FILM: Section = Section {
+    name: "[film]",
+    noun: "[film]",
+    keys: &[
+        key("size", Kind::Special("two integers [width, height] from 1 to 65535"), "[1280, 720]", "Pixels"),
+        key("filter", Kind::Special("\"box\", \"tent\", \"gaussian\", \"mitchell\" or a table"), "`\"mitchell\"`", "Reconstruction filter; the table's keys are below"),
+        key("unit", Kind::Special("a power of two from 2^-40 to 2^40"), "1", "The radiance of one film unit: raise it for scenes brighter than about 65,000, lower it for very dim ones"),
+        key("tonemap", Kind::Choice(&["clamp", "normalise", "reinhard"]), "`\"clamp\"`", "Display: cut at 1, divide by the image's maximum, or L/(1+L)"),
+        key("exposure", Kind::Number(Range::new(-64.0, 64.0)), "0", "Display: stops; +1 doubles"),
+    ],
+};
+
+pub static FILTER: Section = Section {
+    name: "filter = { … }",
+    noun: "a filter",
+    keys: &[
+        key("type", Kind::Choice(&["box", "tent", "gaussian", "mitchell"]), "required", "Its shape"),
+        key("radius", Kind::Number(Range::above(0.0, 16.0)), "box 0.5, tent 1, gaussian 1.5, mitchell 2", "Half width, pixels"),
+        key("sigma", Kind::Number(Range::above(0.0, 16.0)), "0.5", "Standard deviation, pixels").only(&["gaussian"]),
+        key("b", Kind::Number(Range::UNIT), "1/3", "B of Mitchell and Netravali 1988").only(&["mitchell"]),
+        key("c", Kind::Number(Range::UNIT), "1/3", "C of Mitchell and Netravali 1988").only(&["mitchell"]),
+    ],
+};
+
+pub static CAMERA: Section = Section {
+    name: "[camera]",
+    noun: "[camera]",
+    keys: &[
+        key("eye", Kind::Vector, "required", "Position"),
+        key("target", Kind::Vector, "[0, 0, 0]", "The point in the middle of the picture"),
+        key("up", Kind::Vector, "[0, 1, 0]", "What points up in the picture; any length, not along the view"),
+        key("projection", Kind::Choice(&["perspective", "orthographic"]), "`\"perspective\"`", "Orthographic is the eye at infinity"),
+        key("fov", Kind::Number(Range::new(0.01, 179.0)), "45", "Full vertical field of view, degrees").only(&["perspective"]),
+        key("fov_x", Kind::Number(Range::new(0.01, 179.0)), "none", "Full horizontal field of view, degrees, instead of `fov`").only(&["perspective"]),
+        key("height", Kind::Number(Range::POSITIVE), "required", "Height of the view, scene units").only(&["orthographic"]),
+    ],
+};
+
+pub static BACKGROUND: Section = Section {
+    name: "[background]",
+    noun: "[background]",
+    keys: &[
+        key("color", Kind::Color(Range::NOT_NEGATIVE), "0", "Radiance in every direction"),
+        key("bottom", Kind::Color(Range::NOT_NEGATIVE), "0", "Radiance straight down (-y), instead of `color`; between the two the gradient is linear in y"),
+        key("top", Kind::Color(Range::NOT_NEGATIVE), "0", "Radiance straight up (+y)"),
+    ],
+};
+
+const PHONGS: &[&str] = &["phong", "blinn-phong"];
+const LOCAL: &[&str] = &["lambert", "phong", "blinn-phong", "cook-torrance"];
+const SPECULAR: &[&str] = &["phong", "blinn-phong", "cook-torrance"];
+
+pub static MATERIAL: Section = Section {
+    name: "[[material]]",
+    noun: "[[material]]",
+    keys: &[
+        key("name", Kind::Text, "required", "What objects call it; unique"),
+        key("model", Kind::Choice(&["lambert", "phong", "blinn-phong", "cook-torrance", "mirror", "dielectric", "emissive"]), "`\"lambert\"`", "The illumination model"),
+        key("color", Kind::Color(Range::NOT_NEGATIVE), "0.7; mirror 0.9 or the metal's; cook-torrance metals the metal's; emissive 1", "O_d, the diffuse colour, up to 1; of a mirror its reflectance, up to 1; of `emissive` its radiance").only(&["lambert", "phong", "blinn-phong", "cook-torrance", "mirror", "emissive"]),
+        key("texture", Kind::Special("a file name or a table"), "none", "Image that multiplies `color`; the table's keys are below. With a texture, `color` is 1 unless given").only(&["lambert", "phong", "blinn-phong", "cook-torrance", "mirror", "emissive"]),
+        key("k_a", Kind::Number(Range::NOT_NEGATIVE), "1", "Weight of the ambient term").only(LOCAL),
+        key("k_d", Kind::Number(Range::NOT_NEGATIVE), "lambert 1, phong and blinn-phong 0.7, cook-torrance 1 - k_s", "Weight of the diffuse term").only(LOCAL),
+        key("k_s", Kind::Number(Range::NOT_NEGATIVE), "phong and blinn-phong 0.3, cook-torrance metals 1, else 0.5", "Weight of the specular term; cook-torrance: k_d + k_s = 1").only(SPECULAR),
+        key("k_r", Kind::Number(Range::UNIT), "0", "Weight of a mirror branch added to the local model").only(LOCAL),
+        key("specular_color", Kind::Color(Range::UNIT), "1", "O_s, the colour of highlights and of the `k_r` branch; of a dielectric the factor on refracted light").only(&["lambert", "phong", "blinn-phong", "cook-torrance", "dielectric"]),
+        key("exponent", Kind::Number(Range::new(0.0, 1.0e6)), "32", "n of (V·R)^n or (N·H)^n").only(PHONGS),
+        key("normalisation", Kind::Choice(&["printed", "lafortune", "unit", "1982"]), "phong `\"printed\"`, cook-torrance `\"unit\"`", "phong: as `printed` in 1975, or `lafortune` (n+2)/2π. cook-torrance: `unit`, D's projected integral is 1, or `1982`, as that paper prints it, four times brighter").only(&["phong", "cook-torrance"]),
+        key("m", Kind::Number(Range::new(1.0e-3, 2.0)), "0.2", "Rms slope of the Beckmann distribution, the material's roughness").only(&["cook-torrance"]),
+        key("lobes", Kind::Special("one or two tables"), "none", "Weighted sum of Beckmann distributions instead of `m`, such as `[{ m = 0.4, weight = 0.4 }, { m = 0.2, weight = 0.6 }]`").only(&["cook-torrance"]),
+        key("metal", Kind::Choice(&["Cu", "Au", "Ag", "Al", "Cr"]), "none", "Complex index of copper, gold, silver, aluminium or chromium instead of `eta` and `k`").only(&["cook-torrance", "mirror"]),
+        key("eta", Kind::Special("a number from 0.01 to 20, \"glass\", \"water\" or \"diamond\"; with `k` a colour from 0.01 to 20"), "1.5", "Index of refraction relative to the outside: 1.5 glass, 1.333 water, 2.417 diamond").only(&["cook-torrance", "dielectric"]),
+        key("k", Kind::Color(Range::new(0.0, 100.0)), "none", "Extinction coefficient; makes the material a conductor").only(&["cook-torrance"]),
+        key("absorption", Kind::Color(Range::NOT_NEGATIVE), "0", "Beer coefficient inside, per scene unit: after a distance d, e^(-absorption d) is left").only(&["dielectric"]),
+        key("k_t", Kind::Number(Range::UNIT), "0", "Non-refractive transparency: the share of what lies behind").only(LOCAL),
+        key("transparency_mode", Kind::Choice(&["interpolated", "filtered"]), "`\"interpolated\"`", "(1 - k_t) I_1 + k_t I_2, or I_1 + k_t O_t I_2").only(LOCAL),
+        key("transparency_color", Kind::Color(Range::UNIT), "1", "O_t of filtered transparency").only(LOCAL),
+        key("emission", Kind::Color(Range::NOT_NEGATIVE), "0", "Radiance the surface adds by itself; it lights nothing else under these integrators").only(&["lambert", "phong", "blinn-phong", "cook-torrance"]),
+        key("casts_shadow", Kind::Boolean, "false with `k_t` > 0, else true", "Whether it stops shadow rays"),
+    ],
+};
+
+pub static TEXTURE: Section = Section {
+    name: "texture = { … }",
+    noun: "a texture",
+    keys: &[
+        key("file", Kind::Text, "required", "PNG, JPEG, WebP or Radiance HDR, relative to the scene file"),
+        key("wrap", Kind::Special("\"repeat\", \"clamp\", \"mirror\" or two of them [u, v]"), "`\"repeat\"`", "What lies beyond the image's edge"),
+        key("filter", Kind::Choice(&["bilinear", "nearest"]), "`\"bilinear\"`", "Between texels"),
+        key("scale", Kind::Special("a number or two numbers [u, v]"), "1", "uv' = uv * scale + offset; 4 repeats the image four times"),
+        key("offset", Kind::Special("a number or two numbers [u, v]"), "0", "See `scale`"),
+        key("colorspace", Kind::Choice(&["srgb", "linear"]), "`\"srgb\"`", "Encoding of 8-bit images"),
+    ],
+};
+
+pub static LOBE: Section = Section {
+    name: "lobes = [{ … }]",
+    noun: "a lobe",
+    keys: &[
+        key("m", Kind::Number(Range::new(1.0e-3, 2.0)), "required", "Rms slope of the lobe"),
+        key("weight", Kind::Number(Range::UNIT), "required", "Its share; the shares add up to 1"),
+    ],
+};
+
+/// The keys that place a thing, the same everywhere: scale, then rotate, then translate.
+const SCALE: Key = key("scale", Kind::Special("a number or three numbers [x, y, z], none 0"), "1", "Applied first; negative mirrors");
+const ROTATE: Key = key("rotate", Kind::Special("four numbers [x, y, z, degrees]"), "none", "About an axis through the origin, counter-clockwise seen from its tip; applied second");
+const TRANSLATE: Key = key("translate", Kind::Vector, "[0, 0, 0]", "Applied last");
+const MATRIX: Key = key("matrix", Kind::Special("four rows of four numbers"), "none", "Instead of the other three: column vectors, last row [0, 0, 0, 1]");
+const TRANSFORM: Key = key("transform", Kind::Special("an array of tables"), "none", "Steps in the order they are applied, instead of the keys above");
+
+pub static OBJECT: Section = Section {
+    name: "[[object]]",
+    noun: "[[object]]",
+    keys: &[
+        key("name", Kind::Text, "its shape and number", "Unique"),
+        key("shape", Kind::Choice(SHAPES), "required", "What it is; the shapes' own sizes are below"),
+        key("material", Kind::Text, "a grey; a file's own", "Name of a `[[material]]`"),
+        SCALE,
+        ROTATE,
+        TRANSLATE,
+        MATRIX,
+        TRANSFORM,
+        key("casts_shadow", Kind::Boolean, "the material's", "Whether it stops shadow rays"),
+        key("instances", Kind::Special("an array of tables"), "none", "Copies that share the geometry: each placed by its own keys below, after the object's"),
+        key("grid", Kind::Special("a table"), "none", "A block of copies; its keys are below"),
+        key("radius", Kind::Number(Range::POSITIVE), "1", "Scene units").only(&["sphere", "disk", "cylinder", "cone"]),
+        key("size", Kind::Special("a number, or one for each axis: [x, z] (quad, heightfield) or [x, y, z] (box)"), "1", "Lengths of the sides, scene units").only(&["quad", "box", "heightfield"]),
+        key("height", Kind::Number(Range::POSITIVE), "1", "Along y; of a heightfield the height of white").only(&["cylinder", "cone", "heightfield"]),
+        key("capped", Kind::Boolean, "true", "With its disks, else a tube").only(&["cylinder", "cone"]),
+        key("major_radius", Kind::Number(Range::POSITIVE), "1", "From the torus's centre to the middle of its tube").only(&["torus"]),
+        key("minor_radius", Kind::Number(Range::POSITIVE), "0.25", "Of the tube, less than `major_radius`").only(&["torus"]),
+        key("rings", Kind::Integer { min: 3, max: 4096 }, "32", "Segments around the tube").only(&["torus"]),
+        key("profile", Kind::Special("2 to 4096 pairs [radius, height]"), "required", "What turns around the y axis: up along the outer wall, over the rim and down the inner one").only(&["lathe"]),
+        key("curve", Kind::Choice(&["smooth", "polyline"]), "`\"smooth\"`", "How the profile's points are joined").only(&["lathe"]),
+        key("steps", Kind::Integer { min: 1, max: 64 }, "8", "Rows between two points of a smooth profile").only(&["lathe"]),
+        key("crease", Kind::Number(Range::new(0.0, 180.0)), "45", "Edges of a polyline or of smooth normals stay sharp above this angle, degrees").only(&["lathe", "mesh"]),
+        key("segments", Kind::Integer { min: 1, max: 4096 }, "quad and box 1, teapot 8, heightfield 128, others 64; a sphere without it is analytic", "Around the axis (from 3), along each side, along each side of a teapot's patches (to 128), or cells of a heightfield from noise").only(&["sphere", "quad", "box", "disk", "cylinder", "cone", "torus", "lathe", "teapot", "heightfield"]),
+        key("noise", Kind::Special("a table"), "all defaults", "The landscape of a heightfield without `file`; its keys are below").only(&["heightfield"]),
+        key("file", Kind::Text, "required for a mesh", "mesh: OBJ, PLY, glTF or GLB; heightfield: an image, white is high; relative to the scene file").only(&["mesh", "heightfield"]),
+        key("normals", Kind::Choice(&["file", "flat", "smooth"]), "`\"file\"`", "The file's own normals, none, or the mean of the faces around each vertex").only(&["mesh"]),
+    ],
+};
+
+pub static NOISE: Section = Section {
+    name: "noise = { … }",
+    noun: "noise",
+    keys: &[
+        key("features", Kind::Number(Range::new(0.1, 1024.0)), "4", "Hills along a side"),
+        key("octaves", Kind::Integer { min: 1, max: 16 }, "6", "Each twice as fine as the last"),
+        key("gain", Kind::Number(Range::UNIT), "0.5", "Height of an octave over that of the last"),
+        key("seed", Kind::Integer { min: 0, max: u32::MAX as i64 }, "0", "Another seed, another landscape"),
+    ],
+};
+
+pub const SHAPES: &[&str] = &["sphere", "quad", "box", "disk", "cylinder", "cone", "torus", "lathe", "teapot", "heightfield", "mesh"];
+
+pub static STEP: Section = Section {
+    name: "transform = [{ … }]",
+    noun: "a transform step",
+    keys: &[SCALE, ROTATE, TRANSLATE, MATRIX],
+};
+
+pub static INSTANCE: Section = Section {
+    name: "instances = [{ … }]",
+    noun: "an instance",
+    keys: &[
+        key("material", Kind::Text, "the object's", "Name of a `[[material]]`"),
+        SCALE,
+        ROTATE,
+        TRANSLATE,
+        MATRIX,
+        TRANSFORM,
+    ],
+};
+
+pub static GRID: Section = Section {
+    name: "grid = { … }",
+    noun: "a grid",
+    keys: &[
+        key("count", Kind::Special("three integers [x, y, z] from 1, at most 1048576 copies in all"), "required", "Copies along each axis"),
+        key("spacing", Kind::Vector, "required", "Distance between copies, scene units; the block is centred on the object's place"),
+    ],
+};
+
+const PLACED: &[&str] = &["point", "spot"];
+
+pub static LIGHT: Section = Section {
+    name: "[[light]]",
+    noun: "[[light]]",
+    keys: &[
+        key("name", Kind::Text, "its type and number", "Unique"),
+        key("type", Kind::Choice(&["point", "directional", "spot"]), "required", "A point; parallel light from infinity; a directed point (Warn 1983)"),
+        key("position", Kind::Vector, "required", "Where it is").only(PLACED),
+        key("direction", Kind::Vector, "directional required, spot [0, -1, 0]", "The way the light travels; any length").only(&["directional", "spot"]),
+        key("target", Kind::Vector, "none", "A point it shines at, instead of `direction`").only(&["spot"]),
+        key("intensity", Kind::Color(Range::NOT_NEGATIVE), "1", "In the unit of `render.intensity`"),
+        key("color", Kind::Color(Range::UNIT), "1", "Factor on `intensity`"),
+        key("attenuation", Kind::Special("\"inverse-square\", \"none\" or three numbers [c1, c2, c3] >= 0"), "`\"inverse-square\"`; `\"none\"` with `render.intensity = \"lecture\"`", "Fall-off with distance d: 1/d², none, or min(1, 1/(c1 + c2 d + c3 d²))").only(PLACED),
+        key("outer_angle", Kind::Number(Range::above(0.0, 90.0)), "30", "Half angle of the cone δ, degrees: no light beyond").only(&["spot"]),
+        key("inner_angle", Kind::Number(Range::new(0.0, 90.0)), "`outer_angle`", "Half angle where the light begins to fall off towards the edge, degrees; equal to `outer_angle`: a hard edge").only(&["spot"]),
+        key("exponent", Kind::Number(Range::new(0.0, 1.0e6)), "0", "Warn's p: the intensity is times cos^p of the angle off the axis").only(&["spot"]),
+        key("casts_shadow", Kind::Boolean, "true", "Whether things stop it"),
+    ],
+};
+
+/// All of them.
+pub static SECTIONS: &[&Section] = &[
+    &SCENE, &RENDER, &FILM, &FILTER, &CAMERA, &BACKGROUND, &MATERIAL, &TEXTURE, &LOBE, &OBJECT, &NOISE, &STEP, &INSTANCE, &GRID, &LIGHT,
+];
+
+const _: () = assert!(LARGEST < 1.0e15);

@@ -1,0 +1,221 @@
+//! `[[material]]`.
+
+use super::document::Value;
+use super::format::{LOBE, MATERIAL};
+use super::keys::Range;
+use super::metal::{METALS, normal_reflectance};
+use super::names::Names;
+use super::reader::{Reader, Result, in_range};
+use super::texture::Textures;
+use crate::scene::{Fresnel, Lobe, Material, Model, Rgb, Transparency};
+
+/// All materials of the document, and their names.
+pub fn read_materials(
+    root: &Reader,
+    textures: &mut Textures,
+    warnings: &mut Vec<String>,
+) -> Result<(Vec<Material>, Names)> {
+    let mut names = Names::new("material");
+    let mut materials = Vec::new();
+    for table in root.tables("material", &MATERIAL)? {
+        let name = table.required("name", table.text("name")?)?;
+        let name = names.declare(&table, name)?;
+        materials.push(read_material(&table, name, textures, warnings)?);
+    }
+    Ok((materials, names))
+}
+
+/// Index of refraction of glasses by name, at 587.6 nm: crown glass, water at 20 degrees, diamond (Peter 1923).
+const DIELECTRICS: &[(&str, f32)] = &[("glass", 1.5), ("water", 1.333), ("diamond", 2.417)];
+/// Allowed indices of refraction.
+const ETA: Range = Range::new(0.01, 20.0);
+
+/// The words of `model`, in the order of `Model`.
+const MODELS: &[(&str, &str)] = &[
+    ("lambert", "lambert"),
+    ("phong", "phong"),
+    ("blinn-phong", "blinn-phong"),
+    ("cook-torrance", "cook-torrance"),
+    ("mirror", "mirror"),
+    ("dielectric", "dielectric"),
+    ("emissive", "emissive"),
+];
+
+fn read_material(
+    table: &Reader,
+    name: String,
+    textures: &mut Textures,
+    warnings: &mut Vec<String>,
+) -> Result<Material> {
+    let model_name = table.choice("model", MODELS)?.unwrap_or("lambert");
+    table.warn_unused("model", model_name, warnings);
+    let model = read_model(table, model_name)?;
+    let texture = textures.read(table)?;
+    let (k_d, k_s) = read_weights(table, &model)?;
+    Ok(Material {
+        color: read_color(table, &model, texture.is_some())?,
+        color_texture: texture,
+        specular_color: table.color("specular_color")?.unwrap_or(Rgb::ONE),
+        k_a: table.float("k_a")?.unwrap_or(1.0),
+        k_d,
+        k_s,
+        k_r: table.float("k_r")?.unwrap_or(0.0),
+        transparency: read_transparency(table)?,
+        emission: table.color("emission")?.unwrap_or(Rgb::ZERO),
+        casts_shadow: table.boolean("casts_shadow")?,
+        model,
+        name,
+    })
+}
+
+fn read_model(table: &Reader, name: &str) -> Result<Model> {
+    let exponent = table.float("exponent")?.unwrap_or(32.0);
+    let normalisation = read_normalisation(table, name)?;
+    Ok(match name {
+        "phong" => Model::Phong { exponent, lafortune: normalisation == Some("lafortune") },
+        "blinn-phong" => Model::BlinnPhong { exponent },
+        "cook-torrance" => Model::CookTorrance {
+            lobes: read_lobes(table)?,
+            fresnel: read_fresnel(table)?,
+            normalisation_1982: normalisation == Some("1982"),
+        },
+        "mirror" => Model::Mirror,
+        "dielectric" => {
+            Model::Dielectric { eta: read_eta(table)?, absorption: table.color("absorption")?.unwrap_or(Rgb::ZERO) }
+        }
+        "emissive" => Model::Emissive,
+        _ => Model::Lambert,
+    })
+}
+
+fn read_normalisation(table: &Reader, model: &str) -> Result<Option<&'static str>> {
+    let words = [("printed", "printed"), ("lafortune", "lafortune"), ("unit", "unit"), ("1982", "1982")];
+    let word = table.choice("normalisation", &words)?;
+    let allowed: &[&str] = match model {
+        "phong" => &["printed", "lafortune"],
+        "cook-torrance" => &["unit", "1982"],
+        _ => return Ok(word),
+    };
+    match word {
+        Some(word) if !allowed.contains(&word) => {
+            let list = super::keys::list(allowed);
+            Err(table.bad("normalisation", format!("\"normalisation\" of {model:?} must be {list}, found {word:?}")))
+        }
+        word => Ok(word),
+    }
+}
+
+fn read_lobes(table: &Reader) -> Result<Vec<Lobe>> {
+    table.exclusive("m", "lobes")?;
+    let tables = table.tables("lobes", &LOBE)?;
+    if !table.has("lobes") {
+        return Ok(vec![Lobe { m: table.float("m")?.unwrap_or(0.2), weight: 1.0 }]);
+    }
+    if tables.is_empty() || tables.len() > 2 {
+        return Err(table.bad("lobes", format!("\"lobes\" must be one or two tables, found {}", tables.len())));
+    }
+    let lobes = tables
+        .iter()
+        .map(|lobe| {
+            let m = lobe.required("m", lobe.float("m")?)?;
+            let weight = lobe.required("weight", lobe.float("weight")?)?;
+            Ok(Lobe { m, weight })
+        })
+        .collect::<Result<Vec<_>>>()?;
+    let sum: f32 = lobes.iter().map(|lobe| lobe.weight).sum();
+    if (sum - 1.0).abs() > 1.0e-3 {
+        return Err(table.bad("lobes", format!("the weights of \"lobes\" must add up to 1, not to {sum}")));
+    }
+    Ok(lobes)
+}
+
+fn read_fresnel(table: &Reader) -> Result<Fresnel> {
+    table.exclusive("metal", "eta")?;
+    table.exclusive("metal", "k")?;
+    if let Some(metal) = table.choice("metal", METALS)? {
+        return Ok(metal.fresnel());
+    }
+    let Some(k) = table.color("k")? else { return Ok(Fresnel::Dielectric { eta: read_eta(table)? }) };
+    let Some(node) = table.node("eta") else { return Err(table.bad("k", "\"k\" needs \"eta\" beside it")) };
+    match &node.value {
+        Value::String(_) => Err(table.mismatch("eta", node)),
+        _ => {
+            let eta = super::color::color(node, ETA).ok_or_else(|| table.mismatch("eta", node))?;
+            Ok(Fresnel::Conductor { eta, k })
+        }
+    }
+}
+
+/// The index of a dielectric: a number or a name.
+fn read_eta(table: &Reader) -> Result<f32> {
+    let Some(node) = table.node("eta") else { return Ok(1.5) };
+    let eta = match &node.value {
+        Value::String(text) => DIELECTRICS.iter().find(|(name, _)| name == text).map(|(_, eta)| *eta),
+        _ => in_range(node, ETA).map(|eta| eta as f32),
+    };
+    eta.ok_or_else(|| table.mismatch("eta", node))
+}
+
+/// k_d and k_s.
+fn read_weights(table: &Reader, model: &Model) -> Result<(f32, f32)> {
+    let (k_d, k_s) = (table.float("k_d")?, table.float("k_s")?);
+    Ok(match model {
+        Model::Phong { .. } | Model::BlinnPhong { .. } => (k_d.unwrap_or(0.7), k_s.unwrap_or(0.3)),
+        Model::CookTorrance { fresnel, .. } => {
+            let metal = matches!(fresnel, Fresnel::Conductor { .. });
+            match (k_d, k_s) {
+                (None, None) if metal => (0.0, 1.0),
+                (None, None) => (0.5, 0.5),
+                (Some(k), None) if k <= 1.0 => (k, 1.0 - k),
+                (None, Some(k)) if k <= 1.0 => (1.0 - k, k),
+                (Some(d), Some(s)) if (d + s - 1.0).abs() < 1.0e-4 => (d, s),
+                (d, s) => {
+                    let key = if s.is_some() { "k_s" } else { "k_d" };
+                    let found = match (d, s) {
+                        (Some(d), Some(s)) => format!("k_d + k_s = {}", d + s),
+                        (d, s) => format!("{key} = {}", d.or(s).unwrap_or_default()),
+                    };
+                    return Err(table.bad(key, format!("{found}; cook-torrance shares its light: k_d + k_s must be 1")));
+                }
+            }
+        }
+        _ => (k_d.unwrap_or(1.0), 0.0),
+    })
+}
+
+/// O_d; with a texture, the factor on it.
+fn read_color(table: &Reader, model: &Model, textured: bool) -> Result<Rgb> {
+    if let Some(color) = table.color("color")? {
+        if !matches!(model, Model::Emissive) && color.max_element() > 1.0 {
+            let message = format!("\"color\" is a reflectance, at most 1, found {}", color.max_element());
+            return Err(table.bad("color", message));
+        }
+        return Ok(color);
+    }
+    let metal = table.choice("metal", METALS)?.map(|metal| metal.fresnel());
+    Ok(match (model, metal) {
+        (Model::Emissive | Model::Dielectric { .. }, _) => Rgb::ONE,
+        _ if textured => Rgb::ONE,
+        (Model::Mirror, Some(metal)) => normal_reflectance(metal),
+        (Model::Mirror, None) => Rgb::splat(0.9),
+        // What a metal shows of ambient light is its own colour.
+        (Model::CookTorrance { fresnel: fresnel @ Fresnel::Conductor { .. }, .. }, _) => normal_reflectance(*fresnel),
+        _ => Rgb::splat(0.7),
+    })
+}
+
+fn read_transparency(table: &Reader) -> Result<Option<Transparency>> {
+    let filtered = table
+        .choice("transparency_mode", &[("interpolated", false), ("filtered", true)])?
+        .unwrap_or(false);
+    let color = table.color("transparency_color")?;
+    if color.is_some() && !filtered {
+        let message = "\"transparency_color\" needs transparency_mode = \"filtered\"";
+        return Err(table.bad("transparency_color", message));
+    }
+    Ok(match table.float("k_t")?.filter(|k_t| *k_t > 0.0) {
+        Some(k_t) if filtered => Some(Transparency::Filtered { k_t, color: color.unwrap_or(Rgb::ONE) }),
+        Some(k_t) => Some(Transparency::Interpolated { k_t }),
+        None => None,
+    })
+}

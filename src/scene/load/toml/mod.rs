@@ -1,0 +1,96 @@
+//! The house's own scene format: TOML (scenes/README.md).
+//!
+//! `document` holds what was written, `format` lists every key, `reader` reads one; the other files give the values
+//! their meaning.
+
+mod color;
+mod document;
+mod format;
+mod keys;
+mod light;
+mod material;
+mod metal;
+mod names;
+mod object;
+mod overrides;
+mod place;
+mod reader;
+mod settings;
+mod shapes;
+mod texture;
+
+pub(super) use keys::LARGEST;
+pub use overrides::Override;
+
+use super::staging::bare_scene;
+use crate::scene::{IntensityUnit, Rgb, Scene, SceneError};
+use document::Document;
+use format::SCENE;
+use reader::Reader;
+use settings::{LightSettings, read_background, read_camera, read_film, read_render};
+use std::path::Path;
+
+/// The scene that `text` describes; `file` is its name in messages, and its folder is where its paths begin.
+pub fn scene_from_text(file: &Path, text: String, overrides: &[Override]) -> Result<Scene, SceneError> {
+    let mut document = Document::parse(file, text)?;
+    document.apply(overrides)?;
+    let root = Reader::open(&document, &document.root, &SCENE)?;
+    let mut scene = bare_scene(file);
+    let mut lights = LightSettings { unit: IntensityUnit::Radiometric, ambient: Rgb::ZERO };
+    read_render(&root, &mut scene.settings, &mut lights)?;
+    read_film(&root, &mut scene.film)?;
+    let camera = read_camera(&root, &scene.film, None)?;
+    scene.camera = root.required("camera", camera)?;
+    read_background(&root, &mut scene.background)?;
+    scene.ambient = lights.ambient;
+    let mut textures = texture::Textures::default();
+    let (materials, names) = material::read_materials(&root, &mut textures, &mut scene.warnings)?;
+    (scene.materials, scene.textures) = (materials, textures.list);
+    object::read_objects(&root, &names, &mut scene)?;
+    scene.lights = light::read_lights(&root, &lights, &mut scene.warnings)?;
+    warn_dark(&mut scene);
+    Ok(scene)
+}
+
+/// Changes what `[render]`, `[film]` and `[camera]` say of a scene that came from another format.
+pub fn override_settings(scene: &mut Scene, overrides: &[Override]) -> Result<(), SceneError> {
+    let mut document = Document::empty(Path::new(&scene.name));
+    document.apply(overrides)?;
+    let root = Reader::open(&document, &document.root, &SCENE)?;
+    for key in ["background", "material", "object", "light"] {
+        if root.has(key) {
+            let message = format!("{key:?} can only be set in a TOML scene; here render, film and camera can");
+            return Err(root.bad(key, message));
+        }
+    }
+    let mut lights = LightSettings { unit: IntensityUnit::Radiometric, ambient: scene.ambient };
+    if let Some(unit) = scene.lights.first().map(|light| light.unit) {
+        lights.unit = unit;
+    }
+    read_render(&root, &mut scene.settings, &mut lights)?;
+    read_film(&root, &mut scene.film)?;
+    if let Some(camera) = read_camera(&root, &scene.film, Some(scene.camera))? {
+        scene.camera = camera;
+    }
+    scene.ambient = lights.ambient;
+    for light in &mut scene.lights {
+        light.unit = lights.unit;
+    }
+    Ok(())
+}
+
+/// The tables of the format as scenes/README.md prints them: (heading, rows).
+pub fn key_tables() -> Vec<(&'static str, String)> {
+    format::SECTIONS.iter().map(|section| (section.name, section.markdown())).collect()
+}
+
+/// A picture that can only be black deserves a word.
+fn warn_dark(scene: &mut Scene) {
+    let glows = scene.materials.iter().any(|material| {
+        material.emission != Rgb::ZERO || matches!(material.model, crate::scene::Model::Emissive)
+    });
+    let surrounded = scene.background.bottom != Rgb::ZERO || scene.background.top != Rgb::ZERO;
+    if scene.lights.is_empty() && scene.ambient == Rgb::ZERO && !glows && !surrounded {
+        scene.warnings.push(format!("{}: the scene has no light: the picture will be black", scene.name));
+    }
+}

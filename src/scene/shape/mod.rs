@@ -1,0 +1,55 @@
+//! Named shapes as triangle meshes: unit normals, uvs in [0, 1], triangles counter-clockwise seen from outside, y up.
+//!
+//! | shape | where it lies |
+//! |---|---|
+//! | `quad`, `disk` | centred at the origin in the plane y = 0, facing +y |
+//! | `cuboid`, `sphere_mesh`, `torus` | centred at the origin, the torus around the y axis |
+//! | `cylinder`, `cone`, `lathe`, `teapot` | around the y axis; the first two and the teapot stand on y = 0 |
+//! | `height_field` | centred over the origin, heights along y |
+//!
+//! Vertices are computed in f64, transcendental functions by `libm`, and rounded once, so the meshes are the same bits
+//! on every machine. Vertices along creases and texture seams are doubled, at bit-equal positions.
+//!
+//! Sizes are finite and positive and segment counts lie between the bounds given below; a reader of user input checks
+//! that first (`check_segments`, `check_size`). Shapes made from user data return the reason for a refusal instead.
+
+mod flat;
+mod grid;
+mod height_field;
+mod lathe;
+mod noise;
+mod normals;
+mod round;
+mod teapot;
+mod teapot_data;
+
+pub use flat::{cuboid, quad};
+pub use height_field::{HeightGrid, height_field};
+pub use lathe::{Profile, ProfileKind, lathe};
+pub use noise::fractal_heights;
+pub use normals::{compute_smooth_normals, repair_normals};
+pub use round::{cone, cylinder, disk, sphere_mesh, torus};
+pub use teapot::{TEAPOT_PATCHES, teapot, teapot_control_points};
+
+/// Fewest segments around an axis.
+pub const SEGMENTS_MIN: u32 = 3;
+/// Most segments along any direction of a shape: 2^12 squared cells are 33 million triangles.
+pub const SEGMENTS_MAX: u32 = 4096;
+
+/// `segments`, if it is a number of segments that goes around an axis.
+pub fn check_segments(segments: i64) -> Result<u32, String> {
+    if (i64::from(SEGMENTS_MIN)..=i64::from(SEGMENTS_MAX)).contains(&segments) {
+        return Ok(segments as u32);
+    }
+    Err(format!(
+        "{segments} segments; allowed are {SEGMENTS_MIN} to {SEGMENTS_MAX}"
+    ))
+}
+
+/// `size`, if it is a length a shape can have.
+pub fn check_size(size: f64) -> Result<f64, String> {
+    if (1e-30..=1e30).contains(&size) {
+        return Ok(size);
+    }
+    Err(format!("a size of {size}; allowed are 1e-30 to 1e30"))
+}

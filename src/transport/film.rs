@@ -1,0 +1,83 @@
+//! From radiance to the film's integers, whose sums do not care about order (strict rule 8).
+
+use crate::layout::FilmSum;
+use crate::shading::sampling::{hash_u32, unit_float};
+
+/// Scale of the normal and albedo sums, 2^22.
+pub const AOV_SCALE: f32 = 4194304.0;
+/// One contribution is clamped to +-2^39 fixed-point units, twice what a sample may hold.
+const FIXED_LIMIT: f32 = 549755813888.0;
+/// A sample's sum is clamped to +-2^38 units: 2^C with C = 16, times 2^k with k = 22. High word of that limit.
+const SAMPLE_LIMIT_HIGH: u32 = 64;
+/// Below this a contribution is nothing; above it no step of the conversion meets a subnormal.
+const VALUE_MIN: f32 = 1.0e-30;
+
+/// A signed 64-bit integer in two's complement, and whether the value it came from was not a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fixed {
+    pub low: u32,
+    pub high: u32,
+    pub nan: u32,
+}
+
+/// Dither of one lane in 0..1, from a contribution's hash.
+pub fn dither_lane(dither: u32, lane: u32) -> f32 {
+    unit_float(hash_u32(dither.wrapping_add(lane.wrapping_mul(0x9e37_79b9))))
+}
+
+/// floor(value * scale + u) as a 64-bit integer. `scale` is a power of two, u in 0..1 dithers, so that light dimmer
+/// than one unit is kept on average. Not-a-number gives 0 and is counted; beyond +-2^39 the value is clamped.
+pub fn to_fixed(value: f32, scale: f32, u: f32) -> Fixed {
+    let magnitude_bits = value.to_bits() & 0x7fff_ffff;
+    if magnitude_bits > 0x7f80_0000 {
+        return Fixed { low: 0, high: 0, nan: 1 };
+    }
+    if value.abs() < VALUE_MIN {
+        return Fixed { low: 0, high: 0, nan: 0 };
+    }
+    let scaled = value * scale;
+    let bounded = if scaled > FIXED_LIMIT {
+        FIXED_LIMIT
+    } else if scaled < -FIXED_LIMIT {
+        -FIXED_LIMIT
+    } else {
+        scaled
+    };
+    let units = (bounded + u).floor();
+    let magnitude = units.abs();
+    // Two parts below 2^24, so that each conversion is exact on every device.
+    let upper = (magnitude * 5.9604645e-8).floor();
+    let lower = magnitude - upper * 16777216.0;
+    let upper_bits = upper as u32;
+    let low = (upper_bits << 24) | (lower as u32);
+    let high = upper_bits >> 8;
+    if units < 0.0 {
+        // Two's complement.
+        let negated = (!low).wrapping_add(1);
+        let carry = if negated == 0 { 1 } else { 0 };
+        return Fixed { low: negated, high: (!high).wrapping_add(carry), nan: 0 };
+    }
+    Fixed { low, high, nan: 0 }
+}
+
+/// Adds to one lane of a sum, with carry.
+pub fn add_fixed(sum: &mut FilmSum, lane: u32, value: Fixed) {
+    let i = lane as usize;
+    let before = sum.low[i];
+    sum.low[i] = before.wrapping_add(value.low);
+    let carry = if sum.low[i] < before { 1 } else { 0 };
+    sum.high[i] = sum.high[i].wrapping_add(value.high).wrapping_add(carry);
+}
+
+/// A sample's lane as its pixel takes it: clamped to +-2^38 units; `nan` is 1 where it was clamped.
+pub fn clamp_sample(low: u32, high: u32) -> Fixed {
+    let negative = (high & 0x8000_0000) != 0;
+    if !negative && high >= SAMPLE_LIMIT_HIGH && (high > SAMPLE_LIMIT_HIGH || low > 0) {
+        return Fixed { low: 0, high: SAMPLE_LIMIT_HIGH, nan: 1 };
+    }
+    // -2^38 has the high word 2^32 - 64 and the low word 0.
+    if negative && high < 0xffff_ffc0 {
+        return Fixed { low: 0, high: 0xffff_ffc0, nan: 1 };
+    }
+    Fixed { low, high, nan: 0 }
+}

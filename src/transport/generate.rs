@@ -1,0 +1,57 @@
+//! The camera ray of a sample.
+
+use super::DIMENSION_FILTER;
+use crate::layout::{Batch, INVALID, PathState, Ray, SceneHeader, SceneView, T_INFINITE};
+use crate::shading::camera::camera_ray;
+use crate::shading::filter::sample_filter;
+use crate::shading::sampling::{SampleKey, sample_2d};
+use crate::shading::spectrum::spectrum_from_rgb;
+use glam::Vec3;
+
+/// The key of a path's random numbers: they depend on nothing else.
+pub fn sample_key(header: &SceneHeader, pixel: u32, sample_index: u32, path_id: u32) -> SampleKey {
+    SampleKey { sampling: header.sampling, strata: header.strata, seed: header.seed, pixel, sample_index, path_id }
+}
+
+/// Pixel of a slot, counted row by row in the crop.
+pub fn slot_pixel(batch: &Batch, slot: u32) -> u32 {
+    batch.first_pixel + slot % batch.pixel_count // integer
+}
+
+/// The state of the sample in `slot` before its first ray is traced: filter importance sampling (Ernst, Stamminger
+/// and Greiner 2006, "Filter Importance Sampling") places the ray, so one sample touches one pixel.
+pub fn generate(scene: &SceneView, batch: &Batch, slot: u32) -> PathState {
+    let index = slot_pixel(batch, slot);
+    let x = batch.crop_x + index % batch.crop_width; // integer
+    let y = batch.crop_y + index / batch.crop_width; // integer
+    let pixel = x | (y << 16);
+    let sample_index = batch.first_sample + slot / batch.pixel_count; // integer
+    let key = sample_key(scene.header, pixel, sample_index, 0);
+    let filter = sample_filter(scene, sample_2d(key, DIMENSION_FILTER));
+    let film_x = x as f32 + 0.5 + filter.offset.x;
+    let film_y = y as f32 + 0.5 + filter.offset.y;
+    let camera = camera_ray(&scene.header.camera, film_x, film_y);
+    PathState {
+        ray: Ray {
+            origin: camera.origin,
+            t_max: T_INFINITE,
+            direction: camera.direction,
+            skip_instance: INVALID,
+            skip_primitive: INVALID,
+            skip_inward: 0,
+            _pad0: 0,
+            _pad1: 0,
+        },
+        throughput: spectrum_from_rgb(Vec3::splat(filter.weight)),
+        slot,
+        pixel,
+        sample_index,
+        path_id: 0,
+        depth: 0,
+        coverage: filter.weight,
+        eta: 1.0,
+        _pad0: 0,
+        absorption: Vec3::ZERO,
+        _pad1: 0,
+    }
+}

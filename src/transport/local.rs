@@ -1,0 +1,89 @@
+//! The illumination model alone: I = emission + ambient + sum over lights, and what is seen through a pane.
+
+use super::{DITHER_LIGHT, DITHER_SURFACE, LOBE_THROUGH, Queues, add_contribution, push_path, push_shadow};
+use crate::layout::{
+    Light, MATERIAL_FILTERED, MODEL_DIELECTRIC, MODEL_MIRROR, Material, PathState, SceneView, ShadowRay, load_light,
+};
+use crate::shading::frame::{Frame, frame_from_normal, to_local};
+use crate::shading::light::sample_light;
+use crate::shading::material::{ambient_material, eval_material};
+use crate::shading::math::{dot3, normalize3};
+use crate::shading::sampling::{SampleKey, dither_hash, hash_combine};
+use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_max};
+use crate::trace::spawn::{spawn_ray, spawn_through};
+use crate::trace::surface::Surface;
+use glam::{Vec3, Vec4};
+
+/// Smallest cosine between shading normal and viewer; interpolated normals that face away are bent up to it.
+const COS_VIEW_MIN: f32 = 1.0e-3;
+/// A shadow ray ends this fraction short of its light, so that a lamp's own glass does not hide it.
+const SHADOW_END: f32 = 0.9999;
+
+/// The shading normal a viewer at `wo` sees: on the viewer's side of the surface (both sides are shaded alike), and
+/// bent towards the viewer where interpolation has turned it away.
+pub fn facing_normal(surface: &Surface, wo: Vec3) -> Vec3 {
+    let side = if dot3(surface.normal_geometric, wo) < 0.0 { -1.0 } else { 1.0 };
+    let normal = surface.normal * side;
+    let cos_view = dot3(normal, wo);
+    if cos_view < COS_VIEW_MIN {
+        return normalize3(normal + wo * (COS_VIEW_MIN - cos_view));
+    }
+    normal
+}
+
+/// How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
+pub fn own_weight(material: &Material) -> f32 {
+    if (material.flags & MATERIAL_FILTERED) != 0 { 1.0 } else { 1.0 - material.k_t }
+}
+
+/// What the surface adds for one light, before any shadow: throughput * eval * radiance.
+pub fn light_contribution(weight: Spectrum, material: &Material, frame: Frame, wo: Vec3, wi: Vec3, radiance: Spectrum) -> Spectrum {
+    weight * eval_material(material, to_local(frame, wo), to_local(frame, wi)) * radiance
+}
+
+/// Adds emission, ambient and every light's share of the surface, and lets the ray go on through a pane.
+/// `key`: of the path. Directions in world space. Radiance along the ray's way back.
+pub fn shade_local(scene: &SceneView, path: &PathState, key: SampleKey, surface: &Surface, material: &Material, queues: &mut Queues) {
+    let wo = -path.ray.direction;
+    let weight = path.throughput * own_weight(material);
+    let ambient = spectrum_from_rgb(scene.header.ambient) * ambient_material(material);
+    let own = weight * (ambient + spectrum_from_rgb(material.emission));
+    // A mirror or a glass covers the background like anything else.
+    let alpha = path.coverage * (1.0 - material.k_t);
+    let dither = dither_hash(key, DITHER_SURFACE);
+    add_contribution(queues, scene.header.film_scale, path.slot, Vec4::new(own.x, own.y, own.z, alpha), dither);
+
+    if material.model != MODEL_MIRROR && material.model != MODEL_DIELECTRIC {
+        let frame = frame_from_normal(facing_normal(surface, wo));
+        for index in 0..scene.header.light_count {
+            let light: Light = load_light(scene, index);
+            let lit = sample_light(&light, surface.position);
+            let seen = light_contribution(weight, material, frame, wo, lit.wi, lit.radiance);
+            if spectrum_max(seen) > 0.0 {
+                let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
+                let light_dither = dither_hash(key, DITHER_LIGHT + index);
+                if scene.header.shadows != 0 && light.casts_shadow != 0 {
+                    let ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
+                    push_shadow(queues, ShadowRay { ray, contribution, slot: path.slot, dither: light_dither, _pad0: 0, _pad1: 0 });
+                } else {
+                    add_contribution(queues, scene.header.film_scale, path.slot, contribution, light_dither);
+                }
+            }
+        }
+    }
+
+    if material.k_t > 0.0 {
+        let mut tint = Vec4::splat(material.k_t);
+        if (material.flags & MATERIAL_FILTERED) != 0 {
+            tint *= spectrum_from_rgb(material.transmit_color);
+        }
+        let mut through = *path;
+        through.throughput = path.throughput * tint;
+        through.coverage = path.coverage * material.k_t;
+        through.path_id = hash_combine(path.path_id, LOBE_THROUGH);
+        through.ray = spawn_through(surface, path.ray.direction, path.ray.t_max);
+        if spectrum_max(through.throughput) >= scene.header.min_weight {
+            push_path(queues, through);
+        }
+    }
+}

@@ -1,0 +1,4 @@
+//! Proofs that a device computes what it must.
+
+pub mod inputs;
+pub mod twins;

@@ -1,0 +1,132 @@
+//! Every twin as a pair: the Rust function, and its number in a parity kernel. `compare` runs both.
+
+pub mod film;
+pub mod math;
+pub mod models;
+pub mod shading;
+
+use super::inputs::{ARGUMENTS, Domain, arguments};
+use crate::render::RenderError;
+use crate::render::vulkan::{BufferSpec, Context};
+use crate::shaders::{Fetch, kernel};
+use glam::{Vec2, Vec3, Vec4};
+
+/// Words of results one evaluation gives.
+pub const RESULTS: usize = 8;
+
+/// One twin: its name in both languages, what its arguments may be, and the Rust side.
+pub struct Twin {
+    pub name: &'static str,
+    pub domains: &'static [Domain],
+    pub run: fn(&In, &mut Out),
+}
+
+/// The twins of one kernel in `shaders/kernels/parity/`; a twin's index is its number there.
+pub struct Family {
+    pub kernel: &'static str,
+    pub twins: &'static [Twin],
+}
+
+/// All of them.
+pub static FAMILIES: &[Family] = &[math::FAMILY, film::FAMILY, shading::FAMILY, models::FAMILY];
+
+/// The arguments of one evaluation, read as the harness in GLSL reads them.
+pub struct In<'a>(&'a [u32]);
+
+impl In<'_> {
+    pub fn u(&self, k: usize) -> u32 {
+        self.0[k]
+    }
+
+    pub fn f(&self, k: usize) -> f32 {
+        f32::from_bits(self.0[k])
+    }
+
+    pub fn v2(&self, k: usize) -> Vec2 {
+        Vec2::new(self.f(k), self.f(k + 1))
+    }
+
+    pub fn v3(&self, k: usize) -> Vec3 {
+        Vec3::new(self.f(k), self.f(k + 1), self.f(k + 2))
+    }
+}
+
+/// The results of one evaluation.
+#[derive(Default)]
+pub struct Out {
+    words: [u32; RESULTS],
+    count: usize,
+}
+
+impl Out {
+    pub fn u(&mut self, value: u32) -> &mut Self {
+        self.words[self.count] = value;
+        self.count += 1;
+        self
+    }
+
+    pub fn f(&mut self, value: f32) -> &mut Self {
+        self.u(value.to_bits())
+    }
+
+    pub fn v2(&mut self, value: Vec2) -> &mut Self {
+        self.f(value.x).f(value.y)
+    }
+
+    pub fn v3(&mut self, value: Vec3) -> &mut Self {
+        self.f(value.x).f(value.y).f(value.z)
+    }
+
+    pub fn v4(&mut self, value: Vec4) -> &mut Self {
+        self.f(value.x).f(value.y).f(value.z).f(value.w)
+    }
+}
+
+/// Where two sides disagreed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mismatch {
+    pub twin: &'static str,
+    pub arguments: Vec<u32>,
+    pub cpu: Vec<u32>,
+    pub device: Vec<u32>,
+}
+
+impl std::fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let floats = |words: &[u32]| words.iter().map(|w| format!("{:?} ({w:#010x})", f32::from_bits(*w))).collect::<Vec<_>>().join(", ");
+        write!(f, "{}({}): cpu {}, device {}", self.twin, floats(&self.arguments), floats(&self.cpu), floats(&self.device))
+    }
+}
+
+/// NaNs compare as equal: no strict function makes one from arguments in its domain, and their bits are free.
+fn same(a: u32, b: u32) -> bool {
+    a == b || (f32::from_bits(a).is_nan() && f32::from_bits(b).is_nan())
+}
+
+/// Evaluates one twin on `count` sets of arguments on both sides: how many differ, and the first that does.
+pub fn compare(context: &mut Context, family: &Family, number: usize, count: usize, seed: u32) -> Result<(usize, Option<Mismatch>), RenderError> {
+    let twin = &family.twins[number];
+    let inputs = arguments(twin.domains, count, seed);
+    let words = kernel(family.kernel, Fetch::Storage).expect("every family names an embedded kernel");
+    let buffers = [BufferSpec::Input(bytemuck::cast_slice(&inputs)), BufferSpec::Output((count * RESULTS * 4) as u64)];
+    let choice = [number as u32, count as u32];
+    let groups = count.div_ceil(64) as u32;
+    let outputs = context.run_kernel(family.kernel, words, &buffers, bytemuck::cast_slice(&choice), groups)?;
+    let device: Vec<u32> = outputs[0].chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+    let mut differ = 0;
+    let mut first = None;
+    for (set, device) in inputs.chunks(ARGUMENTS).zip(device.chunks(RESULTS)) {
+        let mut out = Out::default();
+        (twin.run)(&In(set), &mut out);
+        if !out.words[..out.count].iter().zip(device).all(|(a, b)| same(*a, *b)) {
+            differ += 1;
+            first.get_or_insert_with(|| Mismatch {
+                twin: twin.name,
+                arguments: set[..twin.domains.iter().map(|d| d.words()).sum()].to_vec(),
+                cpu: out.words[..out.count].to_vec(),
+                device: device[..out.count].to_vec(),
+            });
+        }
+    }
+    Ok((differ, first))
+}

@@ -1,0 +1,168 @@
+//! Output files are whole or not there.
+
+use crate::{film_of, ramp};
+use gonio::film::OutputFile;
+use gonio::film::read::read_film;
+use gonio::film::write::{Format, Picture};
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_committed_file_has_its_name_and_leaves_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gfilm");
+    fs::write(&path, "before").unwrap();
+    let film = film_of(4, &ramp(4, 2), |_| {});
+    let mut file = OutputFile::open(&path).unwrap();
+    assert_eq!(names(folder.path()).len(), 2);
+    let picture = Picture {
+        format: Format::Gfilm,
+        sixteen_bit: false,
+        aovs: &[],
+    };
+    picture.write(&film, &mut file).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"before");
+    file.commit().unwrap();
+    assert_eq!(read_film(&path).unwrap(), film);
+    assert_eq!(names(folder.path()), ["a.gfilm"]);
+}
+
+#[test]
+fn an_uncommitted_file_is_removed_and_what_was_there_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    fs::write(&path, "before").unwrap();
+    let mut file = OutputFile::open(&path).unwrap();
+    file.write_all(b"half of it").unwrap();
+    drop(file);
+    assert_eq!(fs::read(&path).unwrap(), b"before");
+    assert_eq!(names(folder.path()), ["a.png"]);
+}
+
+#[test]
+fn a_commit_that_fails_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    let mut file = OutputFile::open(&path).unwrap();
+    file.write_all(b"all of it").unwrap();
+    // Someone makes a folder of that name while we render.
+    fs::create_dir(&path).unwrap();
+    assert_eq!(file.commit().unwrap_err().exit_code(), 74);
+    assert_eq!(names(folder.path()), ["a.png"]);
+}
+
+#[test]
+fn two_runs_to_one_name_do_not_mix() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    let (mut a, mut b) = (
+        OutputFile::open(&path).unwrap(),
+        OutputFile::open(&path).unwrap(),
+    );
+    a.write_all(b"aaaa").unwrap();
+    b.write_all(b"b").unwrap();
+    b.commit().unwrap();
+    a.commit().unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"aaaa");
+    assert_eq!(names(folder.path()), ["a.png"]);
+}
+
+#[test]
+fn bad_paths_are_refused_before_the_work_starts() {
+    let folder = tempfile::tempdir().unwrap();
+    let read_only = folder.path().join("kept.png");
+    fs::write(&read_only, "kept").unwrap();
+    let mut permissions = fs::metadata(&read_only).unwrap().permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(&read_only, permissions).unwrap();
+    let cases = [
+        (folder.path().to_path_buf(), "it is a folder"),
+        (folder.path().join("new.png/"), "the name is a folder's"),
+        (folder.path().join("missing/a.png"), "no folder "),
+        (folder.path().join("kept.png/a.png"), "Not a directory"),
+        (read_only.clone(), "it is read-only"),
+    ];
+    for (path, reason) in cases {
+        let error = OutputFile::open(&path).unwrap_err();
+        assert_eq!(error.exit_code(), 74);
+        let message = error.to_string();
+        assert!(
+            message.starts_with(&format!("cannot write {}: ", path.display())),
+            "{message}"
+        );
+        assert!(message.contains(reason), "{message}");
+    }
+    assert_eq!(fs::read(&read_only).unwrap(), b"kept");
+    assert_eq!(names(folder.path()), ["kept.png"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_stays_a_link_and_permissions_stay() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("real")).unwrap();
+    let (target, link) = (
+        folder.path().join("real/a.png"),
+        folder.path().join("link.png"),
+    );
+    fs::write(&target, "before").unwrap();
+    fs::set_permissions(&target, fs::Permissions::from_mode(0o640)).unwrap();
+    symlink("real/a.png", &link).unwrap();
+    let write = |path: &Path, text: &str| {
+        let mut file = OutputFile::open(path).unwrap();
+        file.write_all(text.as_bytes()).unwrap();
+        file.commit().unwrap();
+    };
+    write(&link, "after");
+    assert_eq!(fs::read(&target).unwrap(), b"after");
+    assert_eq!(
+        fs::metadata(&target).unwrap().permissions().mode() & 0o777,
+        0o640
+    );
+    // A link to what is not there yet makes it.
+    let dangling = folder.path().join("dangling.png");
+    symlink("real/b.png", &dangling).unwrap();
+    write(&dangling, "new");
+    assert_eq!(fs::read(folder.path().join("real/b.png")).unwrap(), b"new");
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert!(fs::symlink_metadata(&dangling).unwrap().is_symlink());
+    assert_eq!(names(folder.path()), ["dangling.png", "link.png", "real"]);
+    assert_eq!(names(&folder.path().join("real")), ["a.png", "b.png"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn devices_are_written_to_and_a_full_one_is_reported() {
+    use std::os::unix::fs::FileTypeExt;
+    let write = |path: &str| {
+        let mut file = OutputFile::open(Path::new(path)).unwrap();
+        let film = film_of(64, &ramp(64, 64), |_| {});
+        let picture = Picture {
+            format: Format::Gfilm,
+            sixteen_bit: false,
+            aovs: &[],
+        };
+        picture.write(&film, &mut file).and_then(|()| file.commit())
+    };
+    write("/dev/null").unwrap();
+    assert!(
+        fs::metadata("/dev/null")
+            .unwrap()
+            .file_type()
+            .is_char_device()
+    );
+    let error = write("/dev/full").unwrap_err();
+    assert_eq!(error.exit_code(), 74);
+    assert!(error.to_string().contains("No space left"), "{error}");
+}

@@ -1,0 +1,239 @@
+//! The Vulkan layer below the wavefront: memory, kernels, submissions, errors. Needs a device (lavapipe will do).
+
+#[path = "common/device.rs"]
+mod device;
+
+use gonio::bake::SceneData;
+use gonio::layout::{Node, PathState, Triangle};
+use gonio::render::vulkan::{
+    Bound, BufferSpec, FetchChoice, Instance, Place, SceneBuffers, VulkanError, WORKGROUP, bindings,
+};
+use gonio::shaders::{self, Fetch};
+use std::path::Path;
+
+/// Bytes that differ from their neighbours and from page to page.
+fn pattern(length: usize) -> Vec<u8> {
+    (0..length as u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect()
+}
+
+#[test]
+fn bytes_survive_the_way_to_the_device_and_back() {
+    let Some(mut context) = device::context() else {
+        return;
+    };
+    let bytes = pattern((17 << 20) + 52); // more than travels at a time
+    let buffer = context.buffer("round trip", bytes.len() as u64 + 16, Place::Device).unwrap();
+    context.upload(&buffer, 16, &bytes).unwrap();
+    assert!(context.download(&buffer, 16, bytes.len() as u64).unwrap() == bytes);
+    let part = context.download(&buffer, 116, 40).unwrap();
+    assert_eq!(part, bytes[100..140]);
+}
+
+/// Sends `records` through the kernel that reads and writes every record of the layout (its number there: `record`).
+fn through_the_layout_kernel<T: bytemuck::Pod>(record: u32, records: &[T]) -> Option<Vec<T>> {
+    let mut context = device::context()?;
+    let words = shaders::kernel("parity/layout", Fetch::Storage).expect("embedded by build.rs");
+    let mut input = vec![0; 256];
+    input.extend_from_slice(bytemuck::cast_slice(records));
+    let buffers = [BufferSpec::Input(&input), BufferSpec::Output(size_of_val(records) as u64)];
+    let push = [record, records.len() as u32];
+    let output = context
+        .run_kernel("parity/layout", words, &buffers, bytemuck::cast_slice(&push), records.len() as u32)
+        .unwrap();
+    assert_eq!(output.len(), 1);
+    Some(bytemuck::pod_collect_to_vec(&output[0]))
+}
+
+fn counted<T: bytemuck::Pod>(count: usize) -> Vec<T> {
+    let words: Vec<u32> = (0..(count * size_of::<T>() / 4) as u32).collect();
+    bytemuck::pod_collect_to_vec(bytemuck::cast_slice::<u32, u8>(&words))
+}
+
+#[test]
+fn a_kernel_reads_and_writes_records_as_rust_lays_them_out() {
+    let nodes: Vec<Node> = counted(5);
+    let Some(returned) = through_the_layout_kernel(0, &nodes) else {
+        return;
+    };
+    assert_eq!(returned, nodes);
+    let paths: Vec<PathState> = counted(70);
+    assert_eq!(through_the_layout_kernel(9, &paths), Some(paths));
+}
+
+#[test]
+fn a_buffer_that_is_not_written_comes_back_as_it_was() {
+    let Some(mut context) = device::context() else {
+        return;
+    };
+    let words = shaders::kernel("parity/layout", Fetch::Storage).expect("embedded by build.rs");
+    let given = pattern(96);
+    let buffers = [BufferSpec::Input(&[0; 256]), BufferSpec::InOut(&given), BufferSpec::Output(64)];
+    let push = [1u32, 0];
+    let outputs = context.run_kernel("parity/layout", words, &buffers, bytemuck::cast_slice(&push), 1).unwrap();
+    assert_eq!(outputs, [given, vec![0; 64]]);
+}
+
+#[test]
+fn a_kernel_without_its_buffer_is_an_error_that_names_the_binding() {
+    let Some(mut context) = device::context() else {
+        return;
+    };
+    let words = shaders::kernel("parity/layout", Fetch::Storage).expect("embedded by build.rs");
+    let error = context.run_kernel("parity/layout", words, &[BufferSpec::Output(512)], &[0; 8], 1).unwrap_err();
+    assert_eq!(error.to_string(), "0 buffers for set 0 binding 1 of kernel parity/layout");
+}
+
+#[test]
+fn an_array_larger_than_the_device_allows_is_an_error_with_name_and_size() {
+    let Some(context) = device::context() else {
+        return;
+    };
+    let size = context.info().limits.allocation + 16;
+    let Err(error) = context.buffer("vertices of the moon", size, Place::Device) else { panic!("allocated {size}") };
+    let VulkanError::Device(text) = error else { panic!("{error:?}") };
+    assert!(text.starts_with(&format!("cannot allocate vertices of the moon ({size} bytes): ")), "{text}");
+}
+
+#[test]
+fn a_storage_buffer_beyond_the_limit_is_an_error_that_names_it() {
+    let Some(context) = device::context() else {
+        return;
+    };
+    let limits = context.info().limits;
+    if limits.storage_range + 16 > limits.allocation.min(limits.heap) {
+        return println!("SKIPPED: no allocation is larger than a storage buffer may be");
+    }
+    let words = shaders::kernel("parity/layout", Fetch::Storage).expect("embedded by build.rs");
+    let kernel = context.kernel("parity/layout", words, &[(0, WORKGROUP)], 8).unwrap();
+    let buffer = context.buffer("long array", limits.storage_range + 16, Place::Device).unwrap();
+    let Err(error) = Bound::new(&kernel, |_, _| vec![buffer.clone()]) else { panic!("bound") };
+    assert!(error.to_string().starts_with("long array has "), "{error}");
+}
+
+fn scene(nodes: usize, triangles: usize, texels: usize) -> SceneData {
+    let mut data = SceneData {
+        nodes: counted(nodes),
+        triangles: counted(triangles),
+        top_instances: counted(3),
+        texels: counted(texels),
+        ..SceneData::default()
+    };
+    data.header.first_top_instance = 2;
+    data.header.first_texel = 3;
+    data.header.first_table = 3 + texels.div_ceil(4) as u32;
+    data
+}
+
+#[test]
+fn a_scene_is_cut_into_pages_whose_bytes_in_a_row_are_its_arrays() {
+    let Some(mut context) = device::context() else {
+        return;
+    };
+    let data = scene(100, 41, 1000);
+    for fetch in [FetchChoice::Texel, FetchChoice::Storage] {
+        let buffers = SceneBuffers::upload(&mut context, &data, fetch, Some(2000)).unwrap();
+        // Pages of 1024 bytes: 8000, 1968 (within one page's limit, so not cut) and 48 + 4000 bytes.
+        assert_eq!(buffers.page_counts(), [8, 1, 4]);
+        assert_eq!(buffers.constants(), [(1, 8), (2, 1), (3, 4), (4, 6)]);
+        let mut read = |set: usize| -> Vec<u8> {
+            let pages = buffers.pages(set).to_vec();
+            pages.iter().flat_map(|page| context.download(page, 0, page.size()).unwrap()).collect()
+        };
+        assert!(read(0) == bytemuck::cast_slice::<Node, u8>(&data.nodes), "nodes");
+        assert!(read(1) == bytemuck::cast_slice::<Triangle, u8>(&data.triangles), "triangles");
+        let heap = read(2);
+        assert!(heap[32..44] == *bytemuck::cast_slice::<u32, u8>(&data.top_instances), "instances of the top level");
+        assert!(heap[48..4048] == *bytemuck::cast_slice::<u32, u8>(&data.texels), "texels");
+    }
+}
+
+#[test]
+fn an_empty_scene_has_a_page_of_each_set_to_bind() {
+    let Some(mut context) = device::context() else {
+        return;
+    };
+    let buffers = SceneBuffers::upload(&mut context, &SceneData::default(), FetchChoice::Auto, None).unwrap();
+    assert_eq!(buffers.page_counts(), [1, 1, 1]);
+    assert!((0..3).all(|set| buffers.pages(set)[0].size() >= 16));
+}
+
+#[test]
+fn a_scene_beyond_eight_pages_is_refused_with_array_size_and_limit() {
+    let Some(mut context) = device::context() else {
+        return;
+    };
+    let data = scene(103, 1, 1);
+    let Err(error) = SceneBuffers::upload(&mut context, &data, FetchChoice::Auto, Some(1024)) else {
+        panic!("8240 bytes in 8 pages of 1024");
+    };
+    let text = error.to_string();
+    let reason = "BVH nodes take 8240 bytes; 8 pages of this device hold 8192 (1024 bytes each at most)";
+    assert!(matches!(error, VulkanError::Device(_)) && text.contains(reason), "{text}");
+}
+
+#[test]
+fn the_device_clock_does_not_run_backwards() {
+    let Some(mut context) = device::context() else {
+        return;
+    };
+    let buffer = context.buffer("cleared", 1 << 20, Place::Device).unwrap();
+    let submission = context
+        .submit("clearing", |r| {
+            r.timestamp();
+            r.clear(&buffer);
+            r.timestamp();
+        })
+        .unwrap();
+    match submission.times[..] {
+        [] => assert_eq!(context.info().limits.timestamp_bits, 0),
+        [first, second] => assert!(first == 0.0 && (0.0..10.0).contains(&second), "{:?}", submission.times),
+        _ => panic!("{:?}", submission.times),
+    }
+}
+
+#[test]
+fn only_bindings_that_a_kernel_reaches_are_bound() {
+    let words = shaders::kernel("parity/layout", Fetch::Storage).expect("embedded by build.rs");
+    let found = bindings(words).unwrap();
+    assert_eq!(found.iter().map(|b| (b.set, b.binding, b.count)).collect::<Vec<_>>(), [(0, 0, 1), (0, 1, 1)]);
+}
+
+#[test]
+fn the_validation_layer_is_heard() {
+    let Some(context) = device::context() else {
+        return;
+    };
+    if !context.is_validated() {
+        assert!(!device::is_required(), "the validation layer is not installed");
+        return println!("SKIPPED: the validation layer is not installed");
+    }
+    let messages = context.messages();
+    assert_eq!(messages.take(), [""; 0]);
+    context.provoke_validation_message();
+    let said = messages.take();
+    assert!(said.iter().any(|text| text.contains("VUID-VkBufferCreateInfo-usage")), "{said:?}");
+}
+
+#[test]
+#[should_panic(expected = "the validation layers said")]
+fn a_validation_message_fails_a_test() {
+    let Some(context) = device::context() else { panic!("the validation layers said nothing: no device") };
+    if !context.is_validated() {
+        panic!("the validation layers said nothing: not installed");
+    }
+    context.provoke_validation_message();
+}
+
+#[test]
+#[should_panic(expected = "GONIO_REQUIRE_DEVICE=1, but: none")]
+fn a_missing_device_fails_where_one_is_required() {
+    device::skip("none", true);
+}
+
+#[test]
+fn a_machine_without_a_loader_is_told_apart() {
+    let Err(error) = Instance::with_loader(Some(Path::new("no-such-folder/libvulkan.so")), false) else {
+        panic!("opened a library that is not there");
+    };
+    assert!(matches!(error, VulkanError::NoLoader(_)), "{error:?}");
+}
