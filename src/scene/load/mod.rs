@@ -1,7 +1,9 @@
 //! Scene files: one file or folder per format.
 
 mod bounds;
+pub mod gltf;
 pub mod image;
+mod meter;
 pub mod obj;
 pub mod ply;
 mod polygon;
@@ -39,6 +41,7 @@ pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
 /// Loads what a file of a format that is not ours holds; what is missing is left to `staging`.
 fn load_file(path: &Path) -> Result<Scene, SceneError> {
     match extension(path).as_str() {
+        "gltf" | "glb" => gltf::load(path),
         "obj" => obj::load(path),
         "ply" => ply::load(path),
         found => {

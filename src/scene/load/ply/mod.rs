@@ -119,7 +119,7 @@ fn parse(bytes: &[u8]) -> Result<Mesh, Failure> {
 /// Refuses a count that the rest of the file cannot hold, before memory is taken for it.
 fn check_count(element: &Element, header: &Header, reader: &Reader) -> Result<(), Failure> {
     // The last number of a text file needs no separator.
-    let room = reader.remaining() as u64 + 1;
+    let room = reader.remaining() as u64 + u64::from(header.encoding == header::Encoding::Ascii);
     let needed = element
         .count
         .saturating_mul(element.size_min(header.encoding) as u64);
@@ -129,7 +129,7 @@ fn check_count(element: &Element, header: &Header, reader: &Reader) -> Result<()
             element.name,
             element.count,
             element.size_min(header.encoding),
-            room - 1
+            reader.remaining()
         );
         return Err((reader.place(), message));
     }
