@@ -9,6 +9,7 @@ pub mod ply;
 mod polygon;
 pub mod staging;
 mod text;
+mod texture_files;
 pub mod toml;
 
 pub use self::toml::Override;
