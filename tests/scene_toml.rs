@@ -73,8 +73,7 @@ fn the_readme_lists_exactly_the_keys_that_the_reader_knows() {
     let written = fs::read_to_string(&path).expect("scenes/README.md");
     let (before, after) = written.split_once(HEAD).expect("a chapter \"Keys\"");
     let introduction = after.split("\n## ").next().unwrap_or("");
-    let tables: Vec<String> =
-        key_tables().iter().map(|(name, rows)| format!("\n## `{name}`\n\n{rows}")).collect();
+    let tables: Vec<String> = key_tables().iter().map(|(name, rows)| format!("\n## `{name}`\n\n{rows}")).collect();
     let expected = format!("{before}{HEAD}{}\n{}", introduction.trim_end_matches('\n'), tables.concat());
     if std::env::var_os("GONIO_UPDATE").is_some() {
         fs::write(&path, &expected).expect("writable");
@@ -220,21 +219,28 @@ fn a_texture_is_read_once_and_laid_on_as_written() {
 
 #[test]
 fn lights_have_unit_directions_and_the_unit_of_the_scene() {
-    let sun = light("type = \"directional\"\ndirection = [0, -3, -4]\nintensity = [1, 2, 3]\ncolor = 0.5\ncasts_shadow = false");
+    let sun = light(
+        "type = \"directional\"\ndirection = [0, -3, -4]\nintensity = [1, 2, 3]\ncolor = 0.5\ncasts_shadow = false",
+    );
     assert_eq!(sun.kind, LightKind::Directional { direction: Vec3::new(0.0, -0.6, -0.8) });
     assert_eq!((sun.intensity, sun.casts_shadow), (Rgb::new(0.5, 1.0, 1.5), false));
     let lamp = light("type = \"point\"\nposition = [1, 2, 3]\nattenuation = [1, 0, 2]");
     assert_eq!(lamp.kind, LightKind::Point { position: Vec3::new(1.0, 2.0, 3.0) });
     assert_eq!(lamp.attenuation, Attenuation::Polynomial { c1: 1.0, c2: 0.0, c3: 2.0 });
-    let keys = "type = \"spot\"\nposition = [0, 5, 0]\ntarget = [0, 5, -2]\nouter_angle = 60\ninner_angle = 45\nexponent = 8";
+    let keys =
+        "type = \"spot\"\nposition = [0, 5, 0]\ntarget = [0, 5, -2]\nouter_angle = 60\ninner_angle = 45\nexponent = 8";
     let (inner, outer) = (45.0_f64.to_radians() as f32, 60.0_f64.to_radians() as f32);
     let (position, direction) = (Vec3::new(0.0, 5.0, 0.0), Vec3::NEG_Z);
     assert_eq!(light(keys).kind, LightKind::Spot { position, direction, inner, outer, exponent: 8.0 });
 
-    let lecture = format!("[render]\nintensity = \"lecture\"\n{LEAST}[[light]]\ntype = \"point\"\nposition = [1, 2, 3]\n");
+    let lecture =
+        format!("[render]\nintensity = \"lecture\"\n{LEAST}[[light]]\ntype = \"point\"\nposition = [1, 2, 3]\n");
     let lecture = &read(&lecture, &[]).lights[0];
     assert_eq!((lecture.unit, lecture.attenuation), (IntensityUnit::Lecture, Attenuation::None));
-    assert_eq!((lamp.unit, light("type = \"point\"\nposition = [1, 2, 3]").attenuation), (IntensityUnit::Radiometric, Attenuation::InverseSquare));
+    assert_eq!(
+        (lamp.unit, light("type = \"point\"\nposition = [1, 2, 3]").attenuation),
+        (IntensityUnit::Radiometric, Attenuation::InverseSquare)
+    );
 }
 
 #[test]
@@ -288,7 +294,8 @@ fn every_shape_has_the_size_that_its_keys_say() {
     }
     let teapot = read("[camera]\neye = [0, 0, 9]\n[[object]]\nshape = \"teapot\"\nsegments = 2\n", &[]);
     assert!(teapot.meshes[0].triangles.len() > 200);
-    let noise = "shape = \"heightfield\"\nsegments = 16\nsize = [4, 2]\nheight = 0.5\nnoise = { features = 2, seed = 7 }";
+    let noise =
+        "shape = \"heightfield\"\nsegments = 16\nsize = [4, 2]\nheight = 0.5\nnoise = { features = 2, seed = 7 }";
     let land = read(&format!("[camera]\neye = [0, 0, 9]\n[[object]]\n{noise}\n"), &[]);
     assert_eq!(land.meshes[0].triangles.len(), 2 * 16 * 16);
     let ball = read("[camera]\neye = [0, 0, 9]\n[[object]]\nshape = \"sphere\"\nradius = 3\n", &[]);
@@ -353,10 +360,16 @@ fn overrides_change_values_by_name_and_by_number() {
 fn a_wrong_override_is_named_in_the_error() {
     let cases: &[(&str, &str)] = &[
         ("render.smaples=3", "--set render.smaples=3: unknown key \"smaples\"; did you mean \"samples\"?"),
-        ("render.samples=many", "--set render.samples=many: \"samples\" must be an integer from 1 to 16777216, found the string \"many\""),
+        (
+            "render.samples=many",
+            "--set render.samples=many: \"samples\" must be an integer from 1 to 16777216, found the string \"many\"",
+        ),
         ("render.samples=[1", "--set render.samples=[1: "),
         ("material.x.exponent=3", "--set material.x.exponent=3: the scene has no [[material]]"),
-        ("object.bal.scale=3", "--set object.bal.scale=3: there is no item named \"bal\" in a list of 1; did you mean \"ball\"?"),
+        (
+            "object.bal.scale=3",
+            "--set object.bal.scale=3: there is no item named \"bal\" in a list of 1; did you mean \"ball\"?",
+        ),
         ("object.7.scale=3", "--set object.7.scale=3: there is no item 7: the list has 1, counted from 0"),
         ("object.ball.shape.x=3", "--set object.ball.shape.x=3: \"x\" is no part of the string \"sphere\""),
     ];
@@ -376,8 +389,10 @@ fn a_bare_mesh_takes_overrides_of_render_film_and_camera_only() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("m.obj");
     fs::write(&file, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("writable");
-    let set = |texts: &[&str]| -> Vec<Override> { texts.iter().map(|text| text.parse().expect("an override")).collect() };
-    let scene = load(&file, &set(&["film.size=[64, 64]", "camera.eye=[0, 0, 9]", "render.samples=3"])).expect("a scene");
+    let set =
+        |texts: &[&str]| -> Vec<Override> { texts.iter().map(|text| text.parse().expect("an override")).collect() };
+    let scene =
+        load(&file, &set(&["film.size=[64, 64]", "camera.eye=[0, 0, 9]", "render.samples=3"])).expect("a scene");
     assert_eq!((scene.film.width, scene.film.height, scene.settings.samples), (64, 64, 3));
     assert_eq!(scene.camera.eye, Vec3::new(0.0, 0.0, 9.0));
     assert!(!scene.lights.is_empty(), "a bare mesh is staged");

@@ -9,6 +9,7 @@ pub mod ply;
 mod polygon;
 pub mod staging;
 mod text;
+mod texture_files;
 pub mod toml;
 
 pub use self::toml::Override;
@@ -41,6 +42,7 @@ pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
 /// Loads what a file of a format that is not ours holds; what is missing is left to `staging`.
 fn load_file(path: &Path) -> Result<Scene, SceneError> {
     match extension(path).as_str() {
+        "gltf" | "glb" => gltf::load(path),
         "obj" => obj::load(path),
         "ply" => ply::load(path),
         found => {

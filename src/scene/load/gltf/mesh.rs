@@ -50,8 +50,11 @@ pub(super) fn read(
         notes.insert("a primitive without POSITION is not drawn".to_owned());
         return Ok(None);
     };
-    let mut mesh = Mesh::default();
-    mesh.positions = vectors(accessors, position, &user("POSITION"))?;
+    let positions = vectors(accessors, position, &user("POSITION"))?;
+    let mut mesh = Mesh {
+        positions,
+        ..Mesh::default()
+    };
     let count = mesh.positions.len();
     let same_count = |n: usize, name: &str| match n == count {
         true => Ok(()),

@@ -52,7 +52,7 @@ const DISPENSABLE: [&str; 9] = [
 /// Vertices of all meshes together: a file may name one array many times.
 const VERTICES_MAX: usize = 1 << 27;
 
-/// Loads the file as a scene; what it has no camera or light for is staged.
+/// Loads the file as a scene. `load::load` stages what it has no camera or light for.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
     let bytes = std::fs::read(path).map_err(|source| SceneError::Io {
         location: Location::file(path),
@@ -119,6 +119,9 @@ impl Failure {
     }
 }
 
+/// A primitive of a mesh as ours, and its material.
+type Part = (MeshId, MaterialId);
+
 /// What is under way.
 struct Loader<'a> {
     root: &'a Root,
@@ -130,7 +133,7 @@ struct Loader<'a> {
     has_camera: bool,
     materials: HashMap<Option<usize>, (MaterialId, Option<Coordinates>)>,
     /// Meshes by index and morph weights.
-    parts: HashMap<(usize, Vec<u32>), Vec<(MeshId, MaterialId)>>,
+    parts: HashMap<(usize, Vec<u32>), Vec<Part>>,
     vertices: usize,
 }
 
@@ -227,7 +230,7 @@ impl Loader<'_> {
         index: usize,
         weights: Option<&[f32]>,
         user: &str,
-    ) -> Result<Vec<(MeshId, MaterialId)>, Failure> {
+    ) -> Result<Vec<Part>, Failure> {
         let root = self.root;
         let Some(mesh) = root.meshes.get(index) else {
             let message = format!("refers to mesh {index}; there are {}", root.meshes.len());
@@ -344,7 +347,6 @@ impl Loader<'_> {
             scene.ambient = Rgb::splat(0.05);
             meter::expose(&mut scene);
         }
-        staging::stage(&mut scene);
         scene
     }
 }

@@ -1,10 +1,10 @@
 //! The node hierarchy: where everything stands.
 
 use super::accessor::Accessors;
-use super::{Failure, Loader};
+use super::{Failure, Loader, Part};
 use crate::scene::{
-    Attenuation, Camera, Geometry, IntensityUnit, Light, LightKind, MaterialId, MeshId, Object,
-    Projection, Rgb, Transform,
+    Attenuation, Camera, Geometry, IntensityUnit, Light, LightKind, Object, Projection, Rgb,
+    Transform,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec3};
 use gltf::json::camera::Type as CameraType;
@@ -187,7 +187,7 @@ impl Loader<'_> {
 
     pub(super) fn add_objects(
         &mut self,
-        parts: &[(MeshId, MaterialId)],
+        parts: &[Part],
         name: &str,
         world: DAffine3,
     ) -> Result<(), Failure> {
@@ -311,7 +311,7 @@ impl Loader<'_> {
                         .round()
                         .max(1.0) as u32;
                 }
-                if !(p.yfov > 1e-4 && p.yfov < 3.14) {
+                if !(p.yfov > 1e-4 && p.yfov < std::f32::consts::PI) {
                     return Err(Failure::new(
                         place,
                         format!("a yfov of {} radians; allowed are 0 to pi", p.yfov),

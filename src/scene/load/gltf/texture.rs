@@ -181,7 +181,8 @@ fn wrap_code(wrap: Wrap) -> u8 {
     }
 }
 
-/// Offset times rotation times scale, in glTF's uvs, whose v points down the image.
+/// Offset times rotation times scale, in glTF's uvs, whose v points down the image. A positive rotation turns u towards -v:
+/// the matrix printed in the extension has the other sign, a known slip (KhronosGroup/glTF issue 1563).
 fn coordinates(info: &Info) -> Coordinates {
     let transform = info
         .extensions

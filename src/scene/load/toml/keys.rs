@@ -30,7 +30,10 @@ pub struct Key {
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     Boolean,
-    Integer { min: i64, max: i64 },
+    Integer {
+        min: i64,
+        max: i64,
+    },
     Number(Range),
     Text,
     Choice(&'static [&'static str]),

@@ -93,9 +93,10 @@ pub fn key_tables() -> Vec<(&'static str, String)> {
 
 /// A picture that can only be black deserves a word.
 fn warn_dark(scene: &mut Scene) {
-    let glows = scene.materials.iter().any(|material| {
-        material.emission != Rgb::ZERO || matches!(material.model, crate::scene::Model::Emissive)
-    });
+    let glows = scene
+        .materials
+        .iter()
+        .any(|material| material.emission != Rgb::ZERO || matches!(material.model, crate::scene::Model::Emissive));
     let surrounded = scene.background.bottom != Rgb::ZERO || scene.background.top != Rgb::ZERO;
     if scene.lights.is_empty() && scene.ambient == Rgb::ZERO && !glows && !surrounded {
         scene.warnings.push(format!("{}: the scene has no light: the picture will be black", scene.name));

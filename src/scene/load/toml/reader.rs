@@ -70,7 +70,8 @@ impl<'a> Reader<'a> {
             if !only.is_empty() && !only.contains(&value) {
                 let location = self.document.location(entry.key_place);
                 let (key, allowed) = (&entry.key, list(only));
-                warnings.push(format!("{location}: {key:?} has no effect with {switch} = {value:?}, only with {allowed}"));
+                warnings
+                    .push(format!("{location}: {key:?} has no effect with {switch} = {value:?}, only with {allowed}"));
             }
         }
     }
