@@ -80,18 +80,19 @@ uint permute(uint index, uint count, uint seed) {
     mask |= mask >> 2u;
     mask |= mask >> 4u;
     mask |= mask >> 8u;
-    uint multiplier_a = hash_u32(seed) | 1u;
-    uint multiplier_b = hash_u32(seed ^ 0xa511e9b3u) | 1u;
+    uint shift = (uint(bitCount(mask)) + 1u) >> 1u;
     uint x = index;
     // Fewer than two steps on average, and never more than `count`: fewer than that many numbers lie outside.
     for (uint i = 0u; i < count; ++i) {
-        // Each line is a bijection of 0..=mask: adding, xor with higher bits, multiplying by an odd number.
-        x = ((x + seed) * multiplier_a) & mask;
-        x ^= (x >> 1u) ^ (x >> 3u);
-        x = ((x + (seed >> 16u)) * multiplier_b) & mask;
-        x ^= (x >> 2u) ^ (x >> 5u);
-        x = ((x ^ (seed >> 8u)) * (multiplier_a ^ (multiplier_b << 1u))) & mask;
-        x ^= x >> 1u;
+        uint random = seed;
+        // Six rounds, the fewest after which even four numbers come in all orders equally often.
+        for (uint round_ = 0u; round_ < 6u; ++round_) {
+            random = hash_u32(random + 0x9e3779b9u);
+            // Bijections of 0..=mask each: xor, multiplying by an odd number, xor with higher bits, adding.
+            x = ((x ^ (random >> 16u)) * (random | 1u)) & mask;
+            x ^= x >> shift;
+            x = (x + (random >> 8u)) & mask;
+        }
         if (x < count) {
             break;
         }
@@ -102,11 +103,11 @@ uint permute(uint index, uint count, uint seed) {
 // A multiple of 2^-24 in cell `cell` of `count` equal cells of [0, 1), placed by the random number `random`.
 // Whole numbers throughout, so that no rounding leads out of the cell. cell < count <= 65025.
 float jittered(uint cell, uint count, uint random) {
-    // low = floor(cell 2^24 / count), without overflow.
+    // low = ceil(cell 2^24 / count), without overflow.
     uint width = 16777216u / count;
     uint rest = 16777216u - width * count;
-    uint low = cell * width + (cell * rest) / count;
-    uint high = (cell + 1u) * width + ((cell + 1u) * rest) / count;
+    uint low = cell * width + (cell * rest + count - 1u) / count;
+    uint high = (cell + 1u) * width + ((cell + 1u) * rest + count - 1u) / count;
     uint size = high - low;
     uint offset = uint(unit_float(random) * float(size));
     return float(low + (offset < size ? offset : size - 1u)) * 5.9604644775390625e-8;

@@ -5,8 +5,8 @@
 #include "layout/mod.glsl"
 #include "shading/math.glsl"
 
-// No component of a prepared direction is smaller than this part of the largest one (2^-40): so none is zero, no
-// plane distance overflows, and the direction changes by far less than its own rounding.
+// Components of a direction smaller than this part of the largest one (2^-40) become 0, and their reciprocals that of
+// this part: no plane distance overflows, and the direction changes by far less than its own rounding.
 const float DIRECTION_LEAST = 9.094947e-13;
 // Farther away than this (2^40), in units of the level, nothing is hit: products of three lengths stay finite.
 const float ORIGIN_LIMIT = 1.0995116e12;
@@ -18,7 +18,7 @@ struct LevelRay {
     vec3 origin;
     // Not unit in object space: t keeps the units of the world direction.
     vec3 direction;
-    // Reciprocal of each component (of `rcp`'s accuracy).
+    // Reciprocal of each component (of `rcp`'s accuracy); large but finite where the component is 0.
     vec3 inverse;
     // Axis along which the direction is largest, and the two others in cyclic order.
     uint kz;
@@ -29,7 +29,7 @@ struct LevelRay {
     float sx;
     float sy;
     float sz;
-    // In each of four bytes, bits 4, 2, 1: the direction's x, y, z is not negative.
+    // In each of four bytes, bits 4, 2, 1: the x, y, z of `inverse` is not negative.
     uint octant;
 };
 
@@ -50,10 +50,14 @@ LevelRay prepare_ray(vec3 origin, vec3 direction) {
     float az = abs(direction.z);
     float longest = max_(max_(ax, ay), az);
     float least = longest * DIRECTION_LEAST;
+    vec3 d = vec3(
+        ax < least ? 0.0 : direction.x,
+        ay < least ? 0.0 : direction.y,
+        az < least ? 0.0 : direction.z
+    );
     float x = at_least(direction.x, least);
     float y = at_least(direction.y, least);
     float z = at_least(direction.z, least);
-    vec3 d = vec3(x, y, z);
     vec3 inverse = vec3(rcp(x), rcp(y), rcp(z));
     uint kz = ax > ay ? (ax > az ? 0u : 2u) : (ay > az ? 1u : 2u);
     uint kx = kz == 2u ? 0u : kz + 1u;

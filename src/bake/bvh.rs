@@ -312,3 +312,45 @@ fn pack_node(node: &TreeNode, bounds: &Bounds, children: &[Bounds; 8], node_base
         max_z: words(planes[2][1]),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::STACK_SIZE;
+
+    /// Clusters of four boxes that shrink geometrically towards the origin, along x.
+    fn cascade(clusters: u32, factor: f32) -> Vec<Bounds> {
+        let mut radius = 1.0f32;
+        let mut boxes = Vec::new();
+        for _ in 0..clusters {
+            for i in 0..4u8 {
+                let within = Vec3::new(f32::from(i % 3), f32::from(i / 3), 0.0);
+                let corner = Vec3::X * radius + within * (0.02 * radius);
+                boxes.push(Bounds { min: corner, max: corner + Vec3::splat(0.004 * radius) });
+            }
+            radius *= factor;
+        }
+        boxes
+    }
+
+    #[test]
+    fn a_tree_too_deep_for_the_stack_is_shallow_after_a_median_split() {
+        let boxes = cascade(800, 0.9);
+        let deep = Tree::build(&boxes, MESH_LEAF);
+        assert!(deep.stack_depth(|_| None) > STACK_SIZE, "{}", deep.stack_depth(|_| None));
+        let flat = Tree::median_split(&boxes, MESH_LEAF);
+        assert!(flat.stack_depth(|_| None) <= 5, "{}", flat.stack_depth(|_| None));
+        let mut order = flat.order.clone();
+        order.sort_unstable();
+        assert_eq!(order, (0..boxes.len() as u32).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn the_grid_spans_its_extent_and_is_no_coarser_than_need_be() {
+        for extent in [0.0, 1e-30, 1.0, 255.0, 255.000001, 256.0, 510.0, 3.7e9] {
+            let raw = grid_exponent(extent);
+            assert!(255.0 * grid_step(raw) >= extent, "{extent}");
+            assert!(raw == EXPONENT_RANGE.0 as u32 || 255.0 * grid_step(raw - 1) < extent, "{extent}");
+        }
+    }
+}

@@ -32,3 +32,57 @@ pub fn camera_ray(camera: &Camera, film_x: f32, film_y: f32) -> CameraRay {
         direction: normalize3(camera.forward),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::CAMERA_ORTHOGRAPHIC;
+
+    /// 40 x 20 pixels at (1, 2, 3), looking along -z, 90 degrees wide.
+    fn camera(kind: u32) -> Camera {
+        Camera {
+            eye: Vec3::new(1.0, 2.0, 3.0),
+            kind,
+            right: Vec3::X,
+            scale_x: 2.0 / 40.0,
+            up: Vec3::Y * 0.5,
+            scale_y: 2.0 / 20.0,
+            forward: Vec3::NEG_Z,
+            ..Camera::default()
+        }
+    }
+
+    #[test]
+    fn perspective_rays_leave_the_eye_through_their_film_point() {
+        for (x, y, want) in [
+            (20.0, 10.0, Vec3::NEG_Z),
+            (40.0, 10.0, Vec3::new(1.0, 0.0, -1.0)),
+            (0.0, 10.0, Vec3::new(-1.0, 0.0, -1.0)),
+            (20.0, 0.0, Vec3::new(0.0, 0.5, -1.0)),
+            (0.0, 20.0, Vec3::new(-1.0, -0.5, -1.0)),
+        ] {
+            let ray = camera_ray(&camera(CAMERA_PERSPECTIVE), x, y);
+            assert_eq!(ray.origin, Vec3::new(1.0, 2.0, 3.0));
+            assert!(
+                (ray.direction - want.normalize()).length() < 3e-7,
+                "({x}, {y}): {ray:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn orthographic_rays_are_parallel_and_start_at_their_film_point() {
+        for (x, y, origin) in [
+            (20.0, 10.0, Vec3::new(1.0, 2.0, 3.0)),
+            (40.0, 0.0, Vec3::new(2.0, 2.5, 3.0)),
+            (0.0, 20.0, Vec3::new(0.0, 1.5, 3.0)),
+        ] {
+            let ray = camera_ray(&camera(CAMERA_ORTHOGRAPHIC), x, y);
+            assert_eq!(
+                (ray.origin, ray.direction),
+                (origin, Vec3::NEG_Z),
+                "({x}, {y})"
+            );
+        }
+    }
+}

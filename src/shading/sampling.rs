@@ -92,18 +92,19 @@ fn permute(index: u32, count: u32, seed: u32) -> u32 {
     mask |= mask >> 2;
     mask |= mask >> 4;
     mask |= mask >> 8;
-    let multiplier_a = hash_u32(seed) | 1;
-    let multiplier_b = hash_u32(seed ^ 0xa511e9b3) | 1;
+    let shift = (mask.count_ones() + 1) >> 1;
     let mut x = index;
     // Fewer than two steps on average, and never more than `count`: fewer than that many numbers lie outside.
     for _ in 0..count {
-        // Each line is a bijection of 0..=mask: adding, xor with higher bits, multiplying by an odd number.
-        x = (x.wrapping_add(seed)).wrapping_mul(multiplier_a) & mask;
-        x ^= (x >> 1) ^ (x >> 3);
-        x = (x.wrapping_add(seed >> 16)).wrapping_mul(multiplier_b) & mask;
-        x ^= (x >> 2) ^ (x >> 5);
-        x = (x ^ (seed >> 8)).wrapping_mul(multiplier_a ^ (multiplier_b << 1)) & mask;
-        x ^= x >> 1;
+        let mut random = seed;
+        // Six rounds, the fewest after which even four numbers come in all orders equally often.
+        for _ in 0..6 {
+            random = hash_u32(random.wrapping_add(0x9e3779b9));
+            // Bijections of 0..=mask each: xor, multiplying by an odd number, xor with higher bits, adding.
+            x = (x ^ (random >> 16)).wrapping_mul(random | 1) & mask;
+            x ^= x >> shift;
+            x = x.wrapping_add(random >> 8) & mask;
+        }
         if x < count {
             break;
         }
@@ -115,11 +116,11 @@ fn permute(index: u32, count: u32, seed: u32) -> u32 {
 /// Whole numbers throughout, so that no rounding leads out of the cell. cell < count <= 65025.
 #[inline]
 fn jittered(cell: u32, count: u32, random: u32) -> f32 {
-    // low = floor(cell 2^24 / count), without overflow.
+    // low = ceil(cell 2^24 / count), without overflow.
     let width = 16777216 / count;
     let rest = 16777216 - width * count;
-    let low = cell * width + (cell * rest) / count;
-    let high = (cell + 1) * width + ((cell + 1) * rest) / count;
+    let low = cell * width + (cell * rest + count - 1) / count;
+    let high = (cell + 1) * width + ((cell + 1) * rest + count - 1) / count;
     let size = high - low;
     let offset = (unit_float(random) * size as f32) as u32;
     (low + if offset < size { offset } else { size - 1 }) as f32 * 5.9604644775390625e-8

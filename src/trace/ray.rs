@@ -4,8 +4,8 @@ use crate::layout::Instance;
 use crate::shading::math::{max_, rcp};
 use glam::{Vec3, Vec4};
 
-/// No component of a prepared direction is smaller than this part of the largest one (2^-40): so none is zero, no
-/// plane distance overflows, and the direction changes by far less than its own rounding.
+/// Components of a direction smaller than this part of the largest one (2^-40) become 0, and their reciprocals that of
+/// this part: no plane distance overflows, and the direction changes by far less than its own rounding.
 const DIRECTION_LEAST: f32 = 9.094947e-13;
 /// Farther away than this (2^40), in units of the level, nothing is hit: products of three lengths stay finite.
 const ORIGIN_LIMIT: f32 = 1.0995116e12;
@@ -18,7 +18,7 @@ pub struct LevelRay {
     pub origin: Vec3,
     /// Not unit in object space: t keeps the units of the world direction.
     pub direction: Vec3,
-    /// Reciprocal of each component (of `rcp`'s accuracy).
+    /// Reciprocal of each component (of `rcp`'s accuracy); large but finite where the component is 0.
     pub inverse: Vec3,
     /// Axis along which the direction is largest, and the two others in cyclic order.
     pub kz: u32,
@@ -29,7 +29,7 @@ pub struct LevelRay {
     pub sx: f32,
     pub sy: f32,
     pub sz: f32,
-    /// In each of four bytes, bits 4, 2, 1: the direction's x, y, z is not negative.
+    /// In each of four bytes, bits 4, 2, 1: the x, y, z of `inverse` is not negative.
     pub octant: u32,
 }
 
@@ -59,10 +59,14 @@ pub fn prepare_ray(origin: Vec3, direction: Vec3) -> LevelRay {
     let az = direction.z.abs();
     let longest = max_(max_(ax, ay), az);
     let least = longest * DIRECTION_LEAST;
+    let d = Vec3::new(
+        if ax < least { 0.0 } else { direction.x },
+        if ay < least { 0.0 } else { direction.y },
+        if az < least { 0.0 } else { direction.z },
+    );
     let x = at_least(direction.x, least);
     let y = at_least(direction.y, least);
     let z = at_least(direction.z, least);
-    let d = Vec3::new(x, y, z);
     let inverse = Vec3::new(rcp(x), rcp(y), rcp(z));
     let kz = if ax > ay { if ax > az { 0 } else { 2 } } else { if ay > az { 1 } else { 2 } };
     let kx = if kz == 2 { 0 } else { kz + 1 };

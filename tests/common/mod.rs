@@ -147,3 +147,22 @@ pub fn empty_scene() -> Scene {
         warnings: Vec::new(),
     }
 }
+
+/// Clusters of four small triangles that shrink geometrically towards the origin, along x: a tree that follows their
+/// sizes is as deep as they are many.
+pub fn cascade(clusters: u32, factor: f32) -> Mesh {
+    let mut mesh = Mesh { name: "cascade".into(), ..Mesh::default() };
+    let mut radius = 1.0f32;
+    for _ in 0..clusters {
+        for i in 0..4u8 {
+            let corner = Vec3::X * radius + Vec3::new(f32::from(i % 3), f32::from(i / 3), 0.0) * (0.02 * radius);
+            let first = mesh.positions.len() as u32;
+            let size = 0.004 * radius;
+            mesh.positions
+                .extend([Vec3::ZERO, Vec3::new(size, 0.0, size), Vec3::new(0.0, size, size)].map(|p| corner + p));
+            mesh.triangles.push([first, first + 1, first + 2]);
+        }
+        radius *= factor;
+    }
+    mesh
+}

@@ -115,8 +115,8 @@ records! {
         camera, ambient, integrator, background_bottom, max_depth, background_top, min_weight, seed, sampling,
         strata, shadows, filter_kind, filter_radius, filter_norm, filter_table, top_root, instance_count,
         light_count, material_count, first_instance, first_top_instance, first_face, first_vertex, first_material,
-        first_light, first_texture, first_texel, first_table, film_scale, film_limit, aovs, _pad0, _pad1, _pad2,
-        _pad3,
+        first_light, first_texture, first_texel, first_table, film_scale, hide_background, aovs, top_margin, _pad0,
+        _pad1, _pad2,
     }
     Batch {
         crop_x, crop_y, crop_width, crop_height, first_pixel, pixel_count, first_sample, sample_count, slot_count,
@@ -164,7 +164,7 @@ macro_rules! constants {
 constants! {
     INVALID
     CAMERA_PERSPECTIVE CAMERA_ORTHOGRAPHIC
-    MAX_LEVELS
+    MAX_LEVELS STACK_SIZE
     KIND_MESH KIND_SPHERE INSTANCE_NO_SHADOW INSTANCE_MIRRORED
     INTEGRATOR_LOCAL INTEGRATOR_WHITTED
     SAMPLER_SOBOL SAMPLER_STRATIFIED SAMPLER_INDEPENDENT

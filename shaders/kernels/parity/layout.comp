@@ -127,6 +127,7 @@ void store_constants() {
     constants[52] = MAGNIFY_NEAREST;
     constants[53] = MAGNIFY_BILINEAR;
     constants[54] = TEXTURE_WORDS;
+    constants[55] = STACK_SIZE;
 }
 
 void main() {

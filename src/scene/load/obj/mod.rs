@@ -6,7 +6,7 @@
 mod mtl;
 mod statement;
 
-use super::staging::{bare_scene, stage};
+use super::staging::bare_scene;
 use super::text::read_bytes;
 use super::polygon::triangulate;
 use crate::scene::shape::{compute_smooth_normals, repair_normals};
@@ -60,7 +60,7 @@ const SKIPPED: &[(&str, bool)] = &[
     ("vp", true),
 ];
 
-/// Loads the file as a scene, staged.
+/// Loads the file as a scene of one mesh. `load::load` stages it.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
     let mut scene = bare_scene(path);
     let bytes = read_bytes(path)?;
@@ -78,7 +78,6 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         casts_shadow: None,
     });
     scene.meshes.push(mesh);
-    stage(&mut scene);
     Ok(scene)
 }
 

@@ -95,7 +95,8 @@ impl<'a> Statement<'a> {
         let mut words = self.words();
         for (index, number) in numbers.iter_mut().enumerate() {
             let Some(word) = words.next() else {
-                return Err(self.bad(format!("{:?} needs {N} numbers, found {index}", self.keyword())));
+                let numbers = if N == 1 { "number" } else { "numbers" };
+                return Err(self.bad(format!("{:?} needs {N} {numbers}, found {index}", self.keyword())));
             };
             *number = self.number(word)?;
         }

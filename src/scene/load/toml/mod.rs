@@ -52,6 +52,13 @@ pub fn scene_from_text(file: &Path, text: String, overrides: &[Override]) -> Res
     Ok(scene)
 }
 
+/// Changes what `[film]` says of a scene that came from another format.
+pub fn override_film(scene: &mut Scene, overrides: &[Override]) -> Result<(), SceneError> {
+    let mut document = Document::empty(Path::new(&scene.name));
+    document.apply(overrides)?;
+    read_film(&Reader::open(&document, &document.root, &SCENE)?, &mut scene.film)
+}
+
 /// Changes what `[render]`, `[film]` and `[camera]` say of a scene that came from another format.
 pub fn override_settings(scene: &mut Scene, overrides: &[Override]) -> Result<(), SceneError> {
     let mut document = Document::empty(Path::new(&scene.name));

@@ -1,0 +1,178 @@
+//! What baking promises: conservative boxes, a bounded stack, nothing lost but what cannot be hit.
+
+mod common;
+
+use common::*;
+use glam::{DAffine3, DVec3, Vec3};
+use gonio::bake::{SceneData, bake};
+use gonio::layout::*;
+use gonio::scene::*;
+use gonio::trace::traverse::stack_used;
+
+fn byte(words: [u32; 2], slot: u32) -> u32 {
+    (words[(slot / 4) as usize] >> (8 * (slot % 4))) & 255
+}
+
+/// The dequantised box of a child, in double precision.
+fn child_box(node: &Node, slot: u32) -> (DVec3, DVec3) {
+    let step = [0, 1, 2].map(|axis| f64::from(f32::from_bits(((node.exponents_imask >> (8 * axis)) & 255) << 23)));
+    let origin = node.origin.as_dvec3();
+    let plane = |x: [u32; 2], y: [u32; 2], z: [u32; 2]| {
+        let q = [byte(x, slot), byte(y, slot), byte(z, slot)].map(f64::from);
+        origin + DVec3::new(q[0] * step[0], q[1] * step[1], q[2] * step[2])
+    };
+    (plane(node.min_x, node.min_y, node.min_z), plane(node.max_x, node.max_y, node.max_z))
+}
+
+/// Calls `leaf` with every primitive of the tree below `root` once; checks that all child boxes contain what `bounds`
+/// says about the primitives below. Returns the bounds of everything.
+fn check_tree(
+    data: &SceneData,
+    root: u32,
+    bounds: &dyn Fn(u32) -> (DVec3, DVec3),
+    seen: &mut Vec<u32>,
+) -> (DVec3, DVec3) {
+    let node = &data.nodes[root as usize];
+    let inner_mask = node.exponents_imask >> 24;
+    let mut all = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for slot in 0..8 {
+        let meta = byte(node.child_meta, slot);
+        if meta == 0 {
+            continue;
+        }
+        let inside = if inner_mask & (1 << slot) != 0 {
+            assert_eq!(meta, 0b0010_0000 | (24 + slot));
+            let before = (inner_mask & ((1 << slot) - 1)).count_ones();
+            check_tree(data, node.child_base + before, bounds, seen)
+        } else {
+            let count = (meta >> 5).count_ones();
+            assert!(count <= 3);
+            let first = node.primitive_base + (meta & 31);
+            (first..first + count).fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
+                seen.push(p);
+                let (l, h) = bounds(p);
+                (low.min(l), high.max(h))
+            })
+        };
+        let (low, high) = child_box(node, slot);
+        assert!(low.cmple(inside.0).all() && high.cmpge(inside.1).all(), "{low}..{high} loses {inside:?}");
+        all = (all.0.min(inside.0), all.1.max(inside.1));
+    }
+    all
+}
+
+/// Checks the top level and the trees of all instances.
+fn check_scene(data: &SceneData) {
+    let world = |place: u32| {
+        let instance = &data.instances[data.top_instances[place as usize] as usize];
+        let points: Vec<DVec3> = if instance.kind == KIND_SPHERE {
+            // Points of the sphere in object space.
+            let mut random = Random::new(1);
+            (0..50).map(|_| random.direction().as_dvec3()).collect()
+        } else {
+            let mut seen = Vec::new();
+            check_tree(data, instance.root, &|p| triangle_bounds(&data.triangles[p as usize]), &mut seen);
+            let mut once = seen.clone();
+            once.sort_unstable();
+            once.dedup();
+            assert_eq!(once.len(), seen.len(), "a triangle stands in two leaves");
+            let corners = |&p: &u32| {
+                let t = &data.triangles[p as usize];
+                [t.v0.as_dvec3(), t.v1.as_dvec3(), t.v2.as_dvec3()]
+            };
+            seen.iter().flat_map(corners).collect()
+        };
+        let m = instance.to_world.map(|row| row.as_dvec4());
+        let to_world = |p: DVec3| {
+            let p = p.extend(1.0);
+            DVec3::new(m[0].dot(p), m[1].dot(p), m[2].dot(p))
+        };
+        points
+            .into_iter()
+            .map(to_world)
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+    };
+    let mut seen = Vec::new();
+    check_tree(data, data.header.top_root, &world, &mut seen);
+    seen.sort_unstable();
+    assert_eq!(seen, (0..data.instances.len() as u32).collect::<Vec<_>>());
+}
+
+fn triangle_bounds(t: &Triangle) -> (DVec3, DVec3) {
+    let [a, b, c] = [t.v0.as_dvec3(), t.v1.as_dvec3(), t.v2.as_dvec3()];
+    (a.min(b).min(c), a.max(b).max(c))
+}
+
+#[test]
+fn every_child_box_contains_what_lies_below() {
+    let mut random = Random::new(1);
+    let mut scene = scene_of(vec![globe(20), soup(&mut random, 900, 0.01), soup(&mut random, 900, 2.0)]);
+    for _ in 0..40 {
+        let scale = DVec3::new(0.001, 1.0, 1000.0) * f64::from(random.range(0.5, 2.0));
+        let placed = Transform(DAffine3::from_scale(scale))
+            .then(Transform::rotate(random.direction(), 1.0))
+            .then(Transform::translate(random.point(500.0)));
+        scene.objects.push(object(Geometry::Sphere, placed));
+        scene.objects.push(object(Geometry::Mesh(MeshId(0)), placed));
+    }
+    // One flat mesh far from the origin, where floats are coarse.
+    let mut flat = soup(&mut random, 200, 0.1);
+    flat.positions.iter_mut().for_each(|p| *p = Vec3::new(p.x + 1000.0, p.y, 77.7));
+    scene.meshes.push(flat);
+    scene.objects.push(object(Geometry::Mesh(MeshId(3)), Transform::default()));
+    check_scene(&bake(&scene).expect("bakes"));
+}
+
+#[test]
+fn no_ray_needs_more_stack_than_baking_says() {
+    let mut random = Random::new(2);
+    for mesh in [globe(30), soup(&mut random, 3000, 0.3), cascade(380, 0.9)] {
+        let mut scene = scene_of(vec![mesh]);
+        for i in 0..30 {
+            let shift = Transform::translate(random.point(0.3));
+            scene.objects.push(object(if i % 5 == 0 { Geometry::Sphere } else { Geometry::Mesh(MeshId(0)) }, shift));
+        }
+        let data = bake(&scene).expect("bakes");
+        assert!(data.stack_depth <= STACK_SIZE);
+        let mut worst = 0;
+        for i in 0..3000 {
+            // Every other ray runs up the cascade, from its narrow end, inside the cone of its clusters.
+            let aimed = random.ray(2.0);
+            let cone = Vec3::new(1.0, random.range(0.0, 0.024), random.range(0.0, 0.004)).normalize();
+            let up = ray(cone * -1e-3, cone);
+            worst = worst.max(stack_used(&data.view(), if i % 2 == 0 { &aimed } else { &up }));
+        }
+        assert!(worst <= data.stack_depth, "{worst} of {}", data.stack_depth);
+        // The bound is no empty promise: rays come close to it.
+        assert!(worst * 2 >= data.stack_depth, "{worst} of {}", data.stack_depth);
+    }
+}
+
+#[test]
+fn a_scene_too_deep_for_the_stack_is_rebuilt_until_it_fits() {
+    // A cascade of cascades: neither level is too deep by itself.
+    let mut scene = scene_of(vec![cascade(380, 0.9)]);
+    let mesh_alone = bake(&scene).expect("bakes").stack_depth;
+    scene.objects.clear();
+    let mut radius = 1.0e9;
+    for _ in 0..360 {
+        for i in 0..4 {
+            let corner = DVec3::new(1.0 + 0.02 * f64::from(i % 3), 0.02 * f64::from(i / 3), 0.0) * radius;
+            let transform = DAffine3::from_translation(corner) * DAffine3::from_scale(DVec3::splat(0.004 * radius));
+            scene.objects.push(object(Geometry::Mesh(MeshId(0)), Transform(transform)));
+        }
+        radius *= 0.9;
+    }
+    let sphere = |o: &Object| Object { geometry: Geometry::Sphere, ..o.clone() };
+    let spheres = Scene { objects: scene.objects.iter().map(sphere).collect(), ..scene.clone() };
+    let top_alone = bake(&spheres).expect("bakes").stack_depth;
+    assert!(mesh_alone + top_alone > STACK_SIZE, "{mesh_alone} + {top_alone}");
+    let data = bake(&scene).expect("bakes");
+    assert!(data.stack_depth <= 12, "{}", data.stack_depth);
+    let mut random = Random::new(12);
+    for _ in 0..100 {
+        let cone = Vec3::new(1.0, random.range(0.0, 0.024), random.range(0.0, 0.004)).normalize();
+        let used = stack_used(&data.view(), &ray(cone * -1e-3, cone));
+        assert!(used <= data.stack_depth);
+    }
+}
