@@ -4,10 +4,10 @@ mod common;
 
 use common::*;
 use glam::{DAffine3, DVec3, Vec3};
-use gonio::bake::{SceneData, bake};
+use gonio::bake::{BakeError, SceneData, bake};
 use gonio::layout::*;
 use gonio::scene::*;
-use gonio::trace::traverse::stack_used;
+use gonio::trace::traverse::{stack_used, trace_closest};
 
 fn byte(words: [u32; 2], slot: u32) -> u32 {
     (words[(slot / 4) as usize] >> (8 * (slot % 4))) & 255
@@ -175,4 +175,169 @@ fn a_scene_too_deep_for_the_stack_is_rebuilt_until_it_fits() {
         let used = stack_used(&data.view(), &ray(cone * -1e-3, cone));
         assert!(used <= data.stack_depth);
     }
+}
+
+#[test]
+fn an_empty_scene_bakes_and_is_missed() {
+    let mut scene = empty_scene();
+    scene.meshes.push(Mesh { name: "nothing".into(), ..Mesh::default() });
+    scene.objects.push(object(Geometry::Mesh(MeshId(0)), Transform::default()));
+    let data = bake(&scene).expect("bakes");
+    assert_eq!((data.header.top_root, data.header.instance_count, data.stack_depth), (INVALID, 0, 0));
+    assert_eq!(trace_closest(&data.view(), &ray(Vec3::ZERO, Vec3::X)).instance, INVALID);
+}
+
+#[test]
+fn what_cannot_be_hit_is_dropped_with_one_warning_and_keeps_its_number() {
+    let mut mesh = Mesh { name: "bad".into(), ..Mesh::default() };
+    mesh.positions = vec![
+        Vec3::ZERO,
+        Vec3::X,
+        Vec3::Y,
+        Vec3::new(f32::NAN, 0.0, 0.0),
+        Vec3::new(0.0, f32::INFINITY, 0.0),
+        Vec3::new(2.0, 0.0, 0.0),
+    ];
+    mesh.triangles = vec![[0, 1, 3], [0, 1, 5], [4, 1, 2], [1, 1, 2], [0, 1, 2]];
+    let data = bake(&scene_of(vec![mesh])).expect("bakes");
+    let warning = "mesh \"bad\": dropped 2 triangles with coordinates that are not finite and 2 without area";
+    assert_eq!(data.warnings, [warning]);
+    assert_eq!((data.triangles.len(), data.faces.len()), (1, 5));
+    let hit = trace_closest(&data.view(), &ray(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z));
+    assert_eq!((hit.t, hit.primitive), (1.0, 4));
+    assert!(data.vertices.iter().all(|v| v.position.is_finite() && v.normal.is_finite()));
+}
+
+#[test]
+fn instances_share_what_they_show() {
+    let mut scene = scene_of(vec![globe(6)]);
+    let alone = bake(&scene).expect("bakes");
+    for i in 1..5 {
+        let shift = Transform::translate(Vec3::splat(i as f32));
+        scene.objects.push(object(Geometry::Mesh(MeshId(0)), shift));
+    }
+    let data = bake(&scene).expect("bakes");
+    let sizes = |d: &SceneData| (d.triangles.len(), d.faces.len(), d.vertices.len());
+    assert_eq!(sizes(&data), sizes(&alone));
+    assert!(data.instances.iter().all(|i| i.root == data.instances[0].root));
+}
+
+#[test]
+fn the_heap_has_every_array_where_the_header_says() {
+    let mut scene = scene_of(vec![globe(4)]);
+    scene.film.filter = Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 };
+    scene.textures.push(Texture {
+        name: "t".into(),
+        width: 3,
+        height: 1,
+        data: TextureData::Srgb8(std::sync::Arc::new(vec![[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12]])),
+        wrap_u: Wrap::Repeat,
+        wrap_v: Wrap::Clamp,
+        bilinear: true,
+        scale: [1.0; 2],
+        offset: [0.0; 2],
+    });
+    let data = bake(&scene).expect("bakes");
+    let h = &data.header;
+    let pieces = data.heap_pieces();
+    let first = pieces.map(|piece| piece.first_word);
+    assert_eq!(
+        first,
+        [
+            h.first_instance,
+            h.first_top_instance,
+            h.first_face,
+            h.first_vertex,
+            h.first_material,
+            h.first_light,
+            h.first_texture,
+            h.first_texel,
+            h.first_table,
+        ]
+    );
+    for pair in pieces.windows(2) {
+        assert_eq!(pair[1].first_word, pair[0].first_word + pair[0].bytes.len().div_ceil(16) as u32);
+    }
+    let last = pieces[8];
+    assert_eq!(data.heap_words(), u64::from(last.first_word) + last.bytes.len().div_ceil(16) as u64);
+    assert_eq!(pieces[7].bytes, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]);
+    // The sRGB table comes first, then the filter's.
+    assert_eq!((data.tables[255], h.filter_table, h.filter_kind), (1.0, 256, FILTER_TABLE));
+    assert_eq!(data.tables.len() as u32, 256 + 2 * FILTER_KNOTS + 1);
+}
+
+#[test]
+fn the_camera_spans_the_field_of_view() {
+    let mut scene = scene_of(vec![globe(4)]);
+    scene.camera.projection = Projection::Perspective { fov_y: std::f32::consts::FRAC_PI_2 };
+    let camera = bake(&scene).expect("bakes").header.camera;
+    // 64 x 32 pixels, 90 degrees high, looking along -z.
+    assert!((camera.up - Vec3::Y).length() < 1e-6 && (camera.right - Vec3::X * 2.0).length() < 1e-6);
+    assert_eq!((camera.forward, camera.scale_x, camera.scale_y), (Vec3::NEG_Z, 2.0 / 64.0, 2.0 / 32.0));
+    scene.camera.projection = Projection::Orthographic { height: 3.0 };
+    let camera = bake(&scene).expect("bakes").header.camera;
+    assert_eq!((camera.kind, camera.up, camera.right), (CAMERA_ORTHOGRAPHIC, Vec3::Y * 1.5, Vec3::X * 3.0));
+    scene.camera.target = scene.camera.eye;
+    assert!(matches!(bake(&scene), Err(BakeError::Camera(_))));
+    scene.camera.target = scene.camera.eye + Vec3::Y;
+    assert!(matches!(bake(&scene), Err(BakeError::Camera(_))));
+}
+
+#[test]
+fn lecture_intensities_are_multiplied_by_pi() {
+    let mut scene = scene_of(vec![globe(4)]);
+    let light = |unit| Light {
+        name: "lamp".into(),
+        kind: LightKind::Spot { position: Vec3::Y, direction: Vec3::NEG_Y * 2.0, inner: 0.2, outer: 0.4, exponent: 3.0 },
+        intensity: Vec3::new(1.0, 2.0, 4.0),
+        unit,
+        attenuation: Attenuation::Polynomial { c1: 1.0, c2: 0.5, c3: 0.25 },
+        casts_shadow: true,
+    };
+    scene.lights = vec![light(IntensityUnit::Lecture), light(IntensityUnit::Radiometric)];
+    let lights = bake(&scene).expect("bakes").lights;
+    assert_eq!(lights[0].intensity, Vec3::new(1.0, 2.0, 4.0) * std::f32::consts::PI);
+    assert_eq!(lights[1].intensity, Vec3::new(1.0, 2.0, 4.0));
+    assert_eq!((lights[1].direction, lights[1].kind, lights[1].casts_shadow), (Vec3::NEG_Y, LIGHT_SPOT, 1));
+    assert!((lights[1].cos_inner - 0.2f32.cos()).abs() < 1e-6 && (lights[1].cos_outer - 0.4f32.cos()).abs() < 1e-6);
+    assert_eq!((lights[1].attenuation, lights[1].c), (ATTENUATION_POLYNOMIAL, Vec3::new(1.0, 0.5, 0.25)));
+}
+
+#[test]
+fn panes_cast_no_shadow_unless_told_to() {
+    let mut scene = scene_of(vec![globe(4)]);
+    let no_shadow = |scene: &Scene| bake(scene).expect("bakes").instances[0].flags & INSTANCE_NO_SHADOW != 0;
+    assert!(!no_shadow(&scene));
+    scene.materials[0].transparency = Some(Transparency::Interpolated { k_t: 0.5 });
+    assert!(no_shadow(&scene));
+    scene.materials[0].casts_shadow = Some(true);
+    assert!(!no_shadow(&scene));
+    scene.objects[0].casts_shadow = Some(false);
+    assert!(no_shadow(&scene));
+    // By faces: all of them must be panes; a mixture casts, and says so.
+    scene.objects[0].casts_shadow = None;
+    scene.objects[0].material = None;
+    scene.materials[0].casts_shadow = None;
+    let faces = scene.meshes[0].triangles.len();
+    scene.meshes[0].face_materials = vec![MaterialId(0); faces];
+    assert!(no_shadow(&scene));
+    scene.materials.push(Material::grey("wall"));
+    scene.meshes[0].face_materials[0] = MaterialId(1);
+    assert!(!no_shadow(&scene));
+    assert_eq!(bake(&scene).expect("bakes").warnings.len(), 1);
+}
+
+#[test]
+fn what_single_precision_cannot_carry_is_refused() {
+    let bad = |transform: Transform| {
+        let mut scene = scene_of(vec![globe(4)]);
+        scene.objects[0].transform = transform;
+        matches!(bake(&scene), Err(BakeError::Placement { .. }))
+    };
+    assert!(!bad(Transform::scale(Vec3::splat(1e8))) && !bad(Transform::scale(Vec3::splat(1e-8))));
+    assert!(bad(Transform::scale(Vec3::splat(1e12))) && bad(Transform::scale(Vec3::splat(1e-12))));
+    assert!(bad(Transform::translate(Vec3::splat(1e12))) && bad(Transform::translate(Vec3::splat(f32::NAN))));
+    let mut scene = scene_of(vec![globe(4)]);
+    scene.film.unit_exponent = 200;
+    assert!(matches!(bake(&scene), Err(BakeError::FilmUnit(200))));
 }

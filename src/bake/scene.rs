@@ -1,9 +1,11 @@
 //! The whole scene: numbers its parts, shares what is the same, and fills in the header.
 
 use super::bvh::{Bounds, TOP_LEAF, Tree};
+use super::filter::filter_table;
 use super::geometry::{BakedMesh, bake_mesh};
 use super::instance::{place, top_margin};
 use super::material::{bake_light, bake_material, bake_texture, casts_shadow, unit};
+use super::srgb::srgb_table;
 use super::{BakeError, SceneData};
 use crate::layout::{
     Camera, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH,
@@ -29,6 +31,7 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     check_count("words of texels", data.texels.len())?;
     let meshes = bake_meshes(scene, default_material);
     data.header = header(scene)?;
+    bake_tables(&scene.film.filter, &mut data);
     let mut parts = place_objects(scene, &meshes, default_material, &mut data)?;
     parts.meshes = meshes;
     build_hierarchy(parts, &mut data)?;
@@ -58,6 +61,16 @@ fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, Bak
         data.materials.push(bake_material(&Material::grey("default"))?);
     }
     Ok(default)
+}
+
+/// The table array: the sRGB decoding table first, then the filter's, if it has one.
+fn bake_tables(filter: &scene::Filter, data: &mut SceneData) {
+    data.tables = srgb_table();
+    let filter = filter_table(filter);
+    let h = &mut data.header;
+    (h.filter_kind, h.filter_radius, h.filter_norm) = (filter.kind, filter.radius, filter.norm);
+    h.filter_table = data.tables.len() as u32;
+    data.tables.extend(filter.table);
 }
 
 /// Bakes each mesh that an object uses, once.

@@ -201,3 +201,39 @@ pub fn dither_hash(key: SampleKey, dimension: u32) -> u32 {
         key.sample_index,
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn jitter_never_leaves_its_cell() {
+        for count in (1..=300).chain([1023, 4096, 65_024, 65_025]) {
+            for cell in (0..count)
+                .step_by(1 + count as usize / 200)
+                .chain([count - 1])
+            {
+                for random in [0, 0x80000000, u32::MAX] {
+                    let u = jittered(cell, count, random) as f64 * count as f64;
+                    assert_eq!(
+                        u.floor(),
+                        cell as f64,
+                        "{random:#x} in cell {cell} of {count}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn permutations_hit_every_number_once() {
+        for count in (1..=70).chain([255, 256, 257, 65_025]) {
+            let mut hit = vec![false; count as usize];
+            for index in 0..count {
+                let place = permute(index, count, count ^ 0x1234567) as usize;
+                assert!(!hit[place], "{place} of {count} comes twice");
+                hit[place] = true;
+            }
+        }
+    }
+}
