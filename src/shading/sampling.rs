@@ -119,8 +119,8 @@ fn jittered(cell: u32, count: u32, random: u32) -> f32 {
     // low = ceil(cell 2^24 / count), without overflow.
     let width = 16777216 / count;
     let rest = 16777216 - width * count;
-    let low = cell * width + (cell * rest + count - 1) / count;
-    let high = (cell + 1) * width + ((cell + 1) * rest + count - 1) / count;
+    let low = cell * width + (cell * rest + count - 1) / count; // integer
+    let high = (cell + 1) * width + ((cell + 1) * rest + count - 1) / count; // integer
     // A fraction below 1 times the size is rounded to less than the size, always.
     let offset = (unit_float(random) * (high - low) as f32) as u32;
     (low + offset) as f32 * 5.9604644775390625e-8
@@ -147,7 +147,7 @@ pub fn sample_1d(key: SampleKey, dimension: u32) -> f32 {
     if key.sampling == SAMPLER_STRATIFIED {
         let strata = strata_in_range(key.strata);
         let count = strata * strata;
-        let block = key.sample_index / count;
+        let block = key.sample_index / count; // integer
         let cell = permute(
             key.sample_index - block * count,
             count,
@@ -178,13 +178,13 @@ pub fn sample_2d(key: SampleKey, dimension: u32) -> Vec2 {
     if key.sampling == SAMPLER_STRATIFIED {
         let strata = strata_in_range(key.strata);
         let count = strata * strata;
-        let block = key.sample_index / count;
+        let block = key.sample_index / count; // integer
         let cell = permute(
             key.sample_index - block * count,
             count,
             hash_combine(hash_u32(seed), block),
         );
-        let row = cell / strata;
+        let row = cell / strata; // integer
         return Vec2::new(
             jittered(cell - row * strata, strata, random_x),
             jittered(row, strata, random_y),
