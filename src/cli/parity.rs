@@ -46,8 +46,8 @@ pub struct ParityArgs {
     #[arg(long, default_value = "auto")]
     fetch: FetchName,
     /// Threads of the CPU backend.
-    #[arg(short, long, value_name = "N")]
-    threads: Option<usize>,
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
 }
 
 /// One side of a comparison.

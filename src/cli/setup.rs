@@ -174,8 +174,8 @@ pub struct BackendFlags {
     #[arg(long, default_value = "auto")]
     pub fetch: FetchName,
     /// Threads of the CPU backend; as many as cores if not given.
-    #[arg(short, long, value_name = "N")]
-    pub threads: Option<usize>,
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
 }
 
 impl BackendFlags {
@@ -183,14 +183,14 @@ impl BackendFlags {
     pub fn renderer<'a>(&self, data: &'a SceneData) -> Result<Box<dyn Renderer + 'a>, RenderError> {
         let vulkan = || VulkanRenderer::new(data, self.vulkan_options());
         match self.backend {
-            BackendName::Cpu => Ok(Box::new(CpuRenderer::new(data, self.threads)?)),
+            BackendName::Cpu => Ok(Box::new(CpuRenderer::new(data, self.threads.map(usize::from))?)),
             BackendName::Vulkan => Ok(Box::new(vulkan()?)),
             BackendName::Auto if self.device.is_some() => Ok(Box::new(vulkan()?)),
             BackendName::Auto => match vulkan() {
                 Ok(renderer) => Ok(Box::new(renderer)),
                 Err(RenderError::NoDevice(reason)) => {
                     log::warn!("{reason}: using the CPU backend");
-                    Ok(Box::new(CpuRenderer::new(data, self.threads)?))
+                    Ok(Box::new(CpuRenderer::new(data, self.threads.map(usize::from))?))
                 }
                 Err(error) => Err(error),
             },
