@@ -89,7 +89,7 @@ fn the_readme_lists_exactly_the_keys_that_the_reader_knows() {
 fn a_scene_without_settings_has_the_documented_defaults() {
     let scene = read(LEAST, &[]);
     assert_eq!((scene.film.width, scene.film.height), (1280, 720));
-    assert_eq!(scene.film.filter, Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 });
+    assert_eq!(scene.film.filter, Filter::Gaussian { radius: 1.5, sigma: 0.5 });
     assert_eq!((scene.film.unit_exponent, scene.film.tonemap, scene.film.exposure), (0, ToneMap::Clamp, 0.0));
     let settings = RenderSettings {
         integrator: Integrator::Whitted,

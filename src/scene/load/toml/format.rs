@@ -63,8 +63,8 @@ pub static FILM: Section = Section {
         key(
             "filter",
             Kind::Special("\"box\", \"tent\", \"gaussian\", \"mitchell\" or a table"),
-            "`\"mitchell\"`",
-            "Reconstruction filter; the table's keys are below",
+            "`\"gaussian\"`",
+            "Reconstruction filter; the table's keys are below. Mitchell has negative lobes: sharper, and noisy below some 64 samples",
         ),
         key(
             "unit",
