@@ -12,8 +12,13 @@ use source::{Function, Source, root, set, sources, tokens};
 /// Folders whose files exist twice, in `src/` and in `shaders/`.
 const TWINS: [&str; 4] = ["layout", "shading", "trace", "transport"];
 
-/// Functions with one side only: (file stem with folder, function, why).
-const ALONE: [(&str, &str, &str); 0] = [];
+/// Functions whose twins differ or that have none: (folder and stem, function, why).
+const ALONE: [(&str, &str, &str); 4] = [
+    ("trace/traverse", "highest_bit", "findMSB in GLSL"),
+    ("trace/traverse", "push", "GLSL writes to the stack, an array of the caller, in place"),
+    ("trace/traverse", "stack_used", "measures the stack for tests of bake's bound"),
+    ("trace/traverse", "traverse", "`deepest` measures the stack, on the host only"),
+];
 
 /// What of the house each folder may use, from the table in ARCHITECTURE.md; `None` stands for everything.
 fn table() -> BTreeMap<String, Option<BTreeSet<String>>> {
@@ -175,7 +180,8 @@ fn no_shader_includes_what_the_table_does_not_allow() {
 fn every_shader_file_has_its_include_guard() {
     for file in sources("shaders", &["glsl"]) {
         let below = file.path.trim_start_matches("shaders/").trim_end_matches(".glsl");
-        let guard = format!("{}_GLSL", below.replace('/', "_").to_uppercase());
+        // `box_` has its underscore because `box` is a word of Rust.
+        let guard = format!("{}_GLSL", below.trim_end_matches('_').replace('/', "_").to_uppercase());
         let lines = format!("#ifndef {guard}\n#define {guard}\n");
         assert!(file.text.contains(&lines), "{} lacks the guard {guard}", file.path);
     }
@@ -265,6 +271,12 @@ fn twins_define_the_same_functions_with_the_same_arguments_and_words() {
         }
     }
     assert!(found.is_empty(), "{found:#?}");
+    for (place, name, why) in ALONE {
+        let (rust, _) = pairs(place.split('/').next().unwrap_or_default());
+        let exists =
+            rust.values().any(|file| file.path == format!("src/{place}.rs") && functions(file).contains_key(name));
+        assert!(exists, "{place}: `{name}` is gone ({why}); remove it from ALONE");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 #[path = "common/chi_square.rs"]
 mod chi_square;
 
-use chi_square::{Random, direction, integrate_hemisphere, sidak, test_sampler};
+use chi_square::{Random, chi_square, direction, integrate_hemisphere, sidak, test_sampler, upper_gamma};
 use glam::{Vec2, Vec3};
 use gonio::layout::{
     MATERIAL_CONDUCTOR, MATERIAL_D_1982, MATERIAL_LAFORTUNE, MODEL_BLINN_PHONG, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC,
@@ -213,18 +213,53 @@ fn cook_torrance_is_the_formula_of_the_lecture() {
 #[test]
 fn the_specular_peak_moves_beyond_the_mirror_angle_at_grazing_incidence() {
     // Cook and Torrance 1982: for light at 70 degrees and m = .3 the largest reflection is nearer the horizon.
-    let material = Material { m0: 0.3, w0: 1.0, w1: 0.0, ..specular(MODEL_COOK_TORRANCE) };
+    // Phong's stays in the mirror direction.
+    let cook_torrance = Material { m0: 0.3, w0: 1.0, w1: 0.0, ..specular(MODEL_COOK_TORRANCE) };
     let wi = direction(libm::cos(70f64.to_radians()), 0.0);
-    let peak = (0..90)
-        .max_by(|&a, &b| {
-            let at = |degrees: i32| {
-                let wo = direction(libm::cos(f64::from(degrees).to_radians()), std::f64::consts::PI);
-                value(&material, wo, wi)
-            };
-            at(a).total_cmp(&at(b))
-        })
-        .unwrap();
-    assert!(peak > 72, "{peak}");
+    let peak = |material: &Material| {
+        let at = |degrees: &i32| {
+            let wo = direction(libm::cos(f64::from(*degrees).to_radians()), std::f64::consts::PI);
+            value(material, wo, wi)
+        };
+        (0..90).max_by(|a, b| at(a).total_cmp(&at(b))).unwrap()
+    };
+    assert_eq!(peak(&specular(MODEL_PHONG)), 70);
+    assert!(peak(&cook_torrance) > 72, "{}", peak(&cook_torrance));
+}
+
+#[test]
+fn the_chi_square_test_has_the_textbooks_p_values() {
+    // Abramowitz and Stegun 1964, table 26.7: Q(chi^2 | nu).
+    for (statistic, degrees, expected) in
+        [(1.0, 1, 0.317_31), (3.841_46, 1, 0.05), (10.0, 5, 0.075_24), (20.0, 30, 0.916_54)]
+    {
+        let p = upper_gamma(0.5 * f64::from(degrees), 0.5 * statistic);
+        assert!((p - expected).abs() < 1e-5, "{statistic} {degrees}: {p}");
+    }
+    // (30 - 25)^2 / 25 + (20 - 25)^2 / 25 = 2, one degree of freedom.
+    let result = chi_square(&[30, 20], &[25.0, 25.0]);
+    assert_eq!((result.statistic, result.degrees_of_freedom), (2.0, 1));
+    assert!((result.p_value - 0.157_30).abs() < 1e-5);
+    assert!((1.0 - libm::pow(1.0 - sidak(1e-3, 27), 27.0) - 1e-3).abs() < 1e-9);
+}
+
+#[test]
+fn the_chi_square_test_rejects_a_density_that_is_a_little_off() {
+    let wo = direction(0.7, 0.5);
+    let material = specular(MODEL_PHONG);
+    for wrong_exponent in [11.0, 13.0] {
+        let wrong = Material { exponent: wrong_exponent, ..material };
+        let mut random = Random(11);
+        let (result, _) = test_sampler(
+            60_000,
+            || {
+                let sample = sample_material(&material, wo, random.unit2(), random.unit());
+                (sample.pdf > 0.0).then_some(sample.wi)
+            },
+            &|wi| f64::from(pdf_material(&wrong, wo, wi)),
+        );
+        assert!(result.p_value < 1e-6, "{wrong_exponent}: {result:?}");
+    }
 }
 
 #[test]

@@ -3,9 +3,8 @@
 use glam::{DVec3, Vec3};
 use gonio::scene::Mesh;
 use gonio::scene::shape::{
-    HeightGrid, Profile, ProfileKind, TEAPOT_PATCHES, compute_smooth_normals, cone, cuboid,
-    cylinder, disk, fractal_heights, height_field, lathe, quad, repair_normals, sphere_mesh,
-    teapot, teapot_control_points, torus,
+    HeightGrid, Profile, ProfileKind, TEAPOT_PATCHES, cone, cuboid, cylinder, disk,
+    fractal_heights, height_field, lathe, quad, sphere_mesh, teapot, teapot_control_points, torus,
 };
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -449,73 +448,4 @@ fn fractal_landscape_depends_on_its_seed_and_stays_in_range() {
     check(
         &height_field(&fractal_heights(33, 3.0, 5, 0.5, 3), [4.0, 4.0], 0.7).expect("a valid grid"),
     );
-}
-
-/// A unit cube whose eight vertices are shared.
-fn shared_cube() -> Mesh {
-    let positions = (0..8)
-        .map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32))
-        .collect();
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let triangles = quads
-        .iter()
-        .flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]])
-        .collect();
-    Mesh {
-        positions,
-        triangles,
-        ..Mesh::default()
-    }
-}
-
-#[test]
-fn smooth_normals_keep_a_cubes_edges_and_round_a_sphere() {
-    let mut cube = shared_cube();
-    compute_smooth_normals(&mut cube, 0.7);
-    assert_eq!(cube.positions.len(), 24);
-    assert!(
-        cube.normals.iter().all(|n| n.abs().max_element() == 1.0),
-        "{:?}",
-        cube.normals
-    );
-    let mut round = shared_cube();
-    compute_smooth_normals(&mut round, PI);
-    assert_eq!(round.positions.len(), 8);
-    let mut sphere = sphere_mesh(1.0, 32);
-    let exact = std::mem::take(&mut sphere.normals);
-    compute_smooth_normals(&mut sphere, 1.0);
-    assert_eq!(sphere.positions.len(), exact.len());
-    assert!(
-        sphere
-            .normals
-            .iter()
-            .zip(&exact)
-            .all(|(a, b)| a.dot(*b) > 0.97)
-    );
-}
-
-#[test]
-fn zero_and_infinite_normals_are_replaced_and_others_made_unit() {
-    let mut mesh = shared_cube();
-    mesh.normals = mesh
-        .positions
-        .iter()
-        .map(|p| (*p - Vec3::splat(0.5)) * 10.0)
-        .collect();
-    mesh.normals[0] = Vec3::ZERO;
-    mesh.normals[7] = Vec3::new(f32::NAN, 0.0, 1.0);
-    assert_eq!(repair_normals(&mut mesh), 2);
-    for (p, n) in mesh.positions.iter().zip(&mesh.normals) {
-        assert!(
-            (n.length() - 1.0).abs() < 1e-6 && n.dot(*p - Vec3::splat(0.5)) > 0.3,
-            "{p} {n}"
-        );
-    }
 }

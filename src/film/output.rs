@@ -117,6 +117,12 @@ impl OutputFile {
                     // Some file systems report a full disk only here.
                     file.sync_all()?;
                     drop(file);
+                    // A second guard, for what appeared since: renaming as root would replace even `/dev/null`.
+                    if fs::symlink_metadata(&target).is_ok_and(|there| !there.is_file()) {
+                        return Err(io::Error::other(
+                            "something that is no regular file has its name now",
+                        ));
+                    }
                     if let Some(from) = &temporary.0 {
                         fs::rename(from, target)?;
                     }

@@ -48,7 +48,8 @@ pub fn read_film(path: &Path) -> Result<Film, FilmError> {
 }
 
 /// Reads a picture: PNG, JPEG, WebP, Radiance HDR, OpenEXR or gfilm; `-` is standard input.
-/// Integers are taken as sRGB. Of an EXR the first part with R, G, B or with Y is taken.
+/// Integers are taken as sRGB. Of an EXR the first part with any of R, G, B is taken
+/// (those it lacks are 0), else the first with Y.
 pub fn read_picture(path: &Path) -> Result<Picture, FilmError> {
     let source = open(path).map_err(|e| FilmError::read(path, e))?;
     read_picture_from(path, source)
@@ -201,13 +202,18 @@ fn read_exr(path: &Path, bytes: &[u8]) -> Result<Picture, FilmError> {
     use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, Vec2};
     let bad = |e: exr::error::Error| FilmError::bad(path, e.to_string());
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(bad)?;
-    // The same choice as `first_valid_layer` makes below.
     let has = |header: &exr::meta::header::Header, name: &str| {
         header.channels.list.iter().any(|c| c.name.eq(name))
     };
-    let flat = || meta.headers.iter().filter(|header| !header.deep);
-    let coloured = flat().find(|header| ["R", "G", "B"].iter().all(|name| has(header, name)));
-    let Some(header) = coloured.or_else(|| flat().find(|header| has(header, "Y"))) else {
+    let find = |names: &[&'static str]| {
+        let named = |header: &_| names.iter().copied().find(|name| has(header, name));
+        meta.headers
+            .iter()
+            .filter(|header| !header.deep)
+            .find_map(|header| Some((header, named(header)?)))
+    };
+    // `first_valid_layer` below takes the first part with channel `first`: this one, since none before has any.
+    let Some((header, first)) = find(&["R", "G", "B"]).or_else(|| find(&["Y"])) else {
         return Err(FilmError::bad(
             path,
             "no part of this EXR has channels R, G, B or Y",
@@ -234,41 +240,36 @@ fn read_exr(path: &Path, bytes: &[u8]) -> Result<Picture, FilmError> {
         ));
     }
 
-    let create = |size: Vec2<usize>| vec![[0.0f32; 4]; size.area()];
-    let set = move |pixels: &mut Vec<[f32; 4]>, at: Vec2<usize>, pixel: [f32; 4]| {
-        pixels[at.1 * width + at.0] = pixel
+    // The channel that is there for certain, then the other colours, which are 0 where absent.
+    let lanes = match first {
+        "G" => ["G", "R", "B"],
+        "B" => ["B", "R", "G"],
+        _ => [first, "G", "B"],
     };
-    let pixels = if coloured.is_some() {
-        let channels = exr::prelude::read()
-            .no_deep_data()
-            .largest_resolution_level();
-        let channels = channels.rgba_channels(
-            |size, _| create(size),
-            move |pixels, at, (r, g, b, a): (f32, f32, f32, f32)| set(pixels, at, [r, g, b, a]),
-        );
-        let read = channels
-            .first_valid_layer()
-            .all_attributes()
-            .from_buffered(Cursor::new(bytes));
-        read.map_err(bad)?.layer_data.channel_data.pixels
-    } else {
-        let channels = exr::prelude::read()
-            .no_deep_data()
-            .largest_resolution_level();
-        let channels = channels
-            .specific_channels()
-            .required("Y")
-            .optional("A", 1.0f32)
-            .collect_pixels(
-                |size, _| create(size),
-                move |pixels, at, (y, a): (f32, f32)| set(pixels, at, [y, y, y, a]),
-            );
-        let read = channels
-            .first_valid_layer()
-            .all_attributes()
-            .from_buffered(Cursor::new(bytes));
-        read.map_err(bad)?.layer_data.channel_data.pixels
+    let arrange = move |[first, second, third, alpha]: [f32; 4]| match lanes[0] {
+        "Y" => [first, first, first, alpha],
+        "G" => [second, first, third, alpha],
+        "B" => [second, third, first, alpha],
+        _ => [first, second, third, alpha],
     };
+    let read = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .specific_channels()
+        .required(lanes[0])
+        .optional(lanes[1], 0.0f32)
+        .optional(lanes[2], 0.0f32)
+        .optional("A", 1.0f32)
+        .collect_pixels(
+            |size: Vec2<usize>, _| vec![[0.0f32; 4]; size.area()],
+            move |pixels: &mut Vec<[f32; 4]>, at, (a, b, c, alpha): (f32, f32, f32, f32)| {
+                pixels[at.1 * width + at.0] = arrange([a, b, c, alpha]);
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes));
+    let pixels = read.map_err(bad)?.layer_data.channel_data.pixels;
     Ok(Picture {
         image: Image {
             width: width as u32,

@@ -127,5 +127,7 @@ mod tests {
         assert!((twice.y - once.y * once.y).abs() < 1e-6);
         let far = transmittance(absorption, crate::layout::T_INFINITE);
         assert_eq!((far.x, far.y, far.z), (1.0, 0.0, 0.0));
+        assert_eq!(transmittance(absorption, 35.0).z, 0.0, "e^-70 is nothing");
+        assert!(transmittance(absorption, 29.0).z > 0.0);
     }
 }

@@ -141,6 +141,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
         #[test]
         fn frames_are_orthonormal_and_right_handed(v in vector(), tangent in vector(), flat in -40i32..1) {
             let normal = normalize3(Vec3::new(v.x, v.y, ldexp_(v.z, flat)));

@@ -56,6 +56,7 @@ pub fn spot_factor(light: &Light, cos_axis: f32) -> f32 {
 
 /// The light as seen from `position` (world). Zero radiance, but a valid direction, if the two coincide.
 #[inline]
+#[allow(clippy::manual_range_contains, reason = "to read like its twin")]
 pub fn sample_light(light: &Light, position: Vec3) -> LightSample {
     if light.kind == LIGHT_DIRECTIONAL {
         return LightSample {

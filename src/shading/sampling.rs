@@ -119,11 +119,11 @@ fn jittered(cell: u32, count: u32, random: u32) -> f32 {
     // low = ceil(cell 2^24 / count), without overflow.
     let width = 16777216 / count;
     let rest = 16777216 - width * count;
-    let low = cell * width + (cell * rest + count - 1) / count;
-    let high = (cell + 1) * width + ((cell + 1) * rest + count - 1) / count;
-    let size = high - low;
-    let offset = (unit_float(random) * size as f32) as u32;
-    (low + if offset < size { offset } else { size - 1 }) as f32 * 5.9604644775390625e-8
+    let low = cell * width + (cell * rest + count - 1) / count; // integer
+    let high = (cell + 1) * width + ((cell + 1) * rest + count - 1) / count; // integer
+    // A fraction below 1 times the size is rounded to less than the size, always.
+    let offset = (unit_float(random) * (high - low) as f32) as u32;
+    (low + offset) as f32 * 5.9604644775390625e-8
 }
 
 /// Strata per axis in use.
@@ -147,7 +147,7 @@ pub fn sample_1d(key: SampleKey, dimension: u32) -> f32 {
     if key.sampling == SAMPLER_STRATIFIED {
         let strata = strata_in_range(key.strata);
         let count = strata * strata;
-        let block = key.sample_index / count;
+        let block = key.sample_index / count; // integer
         let cell = permute(
             key.sample_index - block * count,
             count,
@@ -178,13 +178,13 @@ pub fn sample_2d(key: SampleKey, dimension: u32) -> Vec2 {
     if key.sampling == SAMPLER_STRATIFIED {
         let strata = strata_in_range(key.strata);
         let count = strata * strata;
-        let block = key.sample_index / count;
+        let block = key.sample_index / count; // integer
         let cell = permute(
             key.sample_index - block * count,
             count,
             hash_combine(hash_u32(seed), block),
         );
-        let row = cell / strata;
+        let row = cell / strata; // integer
         return Vec2::new(
             jittered(cell - row * strata, strata, random_x),
             jittered(row, strata, random_y),
@@ -200,4 +200,40 @@ pub fn dither_hash(key: SampleKey, dimension: u32) -> u32 {
         dimension_seed(key, dimension) ^ 0xd1774e52,
         key.sample_index,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn jitter_never_leaves_its_cell() {
+        for count in (1..=300).chain([1023, 4096, 65_024, 65_025]) {
+            for cell in (0..count)
+                .step_by(1 + count as usize / 200)
+                .chain([count - 1])
+            {
+                for random in [0, 0x80000000, u32::MAX] {
+                    let u = jittered(cell, count, random) as f64 * count as f64;
+                    assert_eq!(
+                        u.floor(),
+                        cell as f64,
+                        "{random:#x} in cell {cell} of {count}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn permutations_hit_every_number_once() {
+        for count in (1..=70).chain([255, 256, 257, 65_025]) {
+            let mut hit = vec![false; count as usize];
+            for index in 0..count {
+                let place = permute(index, count, count ^ 0x1234567) as usize;
+                assert!(!hit[place], "{place} of {count} comes twice");
+                hit[place] = true;
+            }
+        }
+    }
 }

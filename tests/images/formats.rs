@@ -173,8 +173,8 @@ fn hdr_keeps_light_to_half_a_mantissa_step() {
     // Below 8 and from 8 pixels on lines are stored differently; 300 has runs and literals above 127.
     for width in [1, 7, 8, 300] {
         let mut pixels = ramp(width, 5);
-        let flat = pixels.len().min(200);
-        pixels[..flat / 2].fill([0.75, 0.0, 3.0, 1.0]);
+        let flat = pixels.len() / 2;
+        pixels[..flat].fill([0.75, 0.0, 3.0, 1.0]);
         pixels[0] = [-1.0, 0.0, -3.0, 1.0];
         let bytes = encode(&film_of(width, &pixels, |_| {}), Format::Hdr, false);
         assert!(bytes.starts_with(b"#?RADIANCE\n# Software: gonio 0.1.0\n# Film-Hash: "));
@@ -191,6 +191,72 @@ fn hdr_keeps_light_to_half_a_mantissa_step() {
             }
         }
     }
+}
+
+/// An EXR of one row of three pixels with these channels, the values of channel i being 10 i + 1, 2, 3.
+fn exr_with(names: &[&str]) -> Vec<u8> {
+    use exr::prelude::{
+        AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, WritableImage,
+    };
+    let samples = |i: usize| FlatSamples::F32((1..4).map(|k| (10 * i + k) as f32).collect());
+    let channels = names
+        .iter()
+        .enumerate()
+        .map(|(i, name)| AnyChannel::new(*name, samples(i)));
+    let channels = AnyChannels::sort(channels.collect());
+    let layer = Layer::new(
+        (3, 1),
+        LayerAttributes::default(),
+        Encoding::UNCOMPRESSED,
+        channels,
+    );
+    let mut bytes = Cursor::new(Vec::new());
+    exr::prelude::Image::from_layer(layer)
+        .write()
+        .to_buffered(&mut bytes)
+        .unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn exr_colours_that_are_absent_are_black_and_luminance_is_grey() {
+    let second = |names: &[&str]| read(&exr_with(names)).unwrap().image.pixels[1];
+    assert_eq!(second(&["R", "G", "B", "A"]), [2.0, 12.0, 22.0, 32.0]);
+    assert_eq!(second(&["R", "B"]), [2.0, 0.0, 12.0, 1.0]);
+    assert_eq!(second(&["G"]), [0.0, 2.0, 0.0, 1.0]);
+    assert_eq!(second(&["G", "B"]), [0.0, 2.0, 12.0, 1.0]);
+    assert_eq!(second(&["B", "Z"]), [0.0, 0.0, 2.0, 1.0]);
+    assert_eq!(second(&["Y", "A"]), [2.0, 2.0, 2.0, 12.0]);
+    let error = read(&exr_with(&["Z"])).unwrap_err().to_string();
+    assert!(
+        error.contains("no part of this EXR has channels R, G, B or Y"),
+        "{error}"
+    );
+}
+
+#[test]
+fn an_opaque_film_file_shows_no_coverage() {
+    let pixels = [[0.5, 0.5, 0.5, 0.25]];
+    let alpha = |transparent: bool| {
+        let film = film_of(1, &pixels, |s| s.transparent = transparent);
+        read(&encode(&film, Format::Gfilm, false))
+            .unwrap()
+            .image
+            .pixels[0][3]
+    };
+    assert_eq!((alpha(false), alpha(true)), (1.0, 0.25));
+}
+
+#[test]
+fn rgbe_rounds_to_the_nearest_mantissa_and_stays_in_range() {
+    use gonio::film::write::rgbe;
+    assert_eq!(rgbe([1.0, 0.5, 0.0]), [128, 64, 0, 129]);
+    // 255.75 / 256 rounds up to a mantissa of 256, which is 128 with the next exponent.
+    assert_eq!(rgbe([0.999_023_44, 0.0, 0.0]), [128, 0, 0, 129]);
+    assert_eq!(rgbe([f32::NAN, -1.0, 0.0]), [0; 4]);
+    assert_eq!(rgbe([1e-40, 0.0, 0.0]), [0; 4]);
+    assert_eq!(rgbe([f32::INFINITY, 0.0, 0.0]), [255, 0, 0, 255]);
+    assert_eq!(rgbe([f32::MAX, 0.0, 0.0]), [255, 0, 0, 255]);
 }
 
 #[test]
@@ -273,9 +339,16 @@ fn an_exr_that_claims_a_huge_picture_is_refused_before_memory_is_taken() {
     let mut bytes = encode(&film_of(4, &ramp(4, 2), |_| {}), Format::Exr, false);
     let name = b"dataWindow\0box2i\0";
     let at = bytes.windows(name.len()).position(|w| w == name).unwrap() + name.len() + 4;
-    bytes[at + 8..at + 16].copy_from_slice(&[255, 255, 255, 0, 255, 255, 0, 0]);
-    let error = read(&bytes).unwrap_err();
-    assert_eq!(error.exit_code(), 65, "{error}");
+    let mut refuse = |width: i32, height: i32, reason: &str| {
+        bytes[at + 8..at + 12].copy_from_slice(&(width + 1).to_le_bytes());
+        bytes[at + 12..at + 16].copy_from_slice(&height.to_le_bytes());
+        let error = read(&bytes).unwrap_err();
+        assert_eq!(error.exit_code(), 65, "{error}");
+        assert!(error.to_string().contains(reason), "{error}");
+    };
+    // The corner is 2,1: these are the last column and row of a picture of that size.
+    refuse(1 << 20, 1 << 20, "pixels are allowed");
+    refuse(4, 1 << 20, "fewer bytes than its chunks need");
 }
 
 #[test]

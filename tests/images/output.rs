@@ -61,6 +61,19 @@ fn a_commit_that_fails_leaves_nothing() {
     assert_eq!(names(folder.path()), ["a.png"]);
 }
 
+#[cfg(unix)]
+#[test]
+fn what_appeared_under_the_name_meanwhile_is_not_replaced_unless_it_is_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pipe.gfilm");
+    let mut file = OutputFile::open(&path).unwrap();
+    file.write_all(b"all of it").unwrap();
+    named_pipe(folder.path());
+    assert_eq!(file.commit().unwrap_err().exit_code(), 74);
+    assert!(is_pipe(&path));
+    assert_eq!(names(folder.path()), ["pipe.gfilm"]);
+}
+
 #[test]
 fn two_runs_to_one_name_do_not_mix() {
     let folder = tempfile::tempdir().unwrap();
@@ -141,28 +154,72 @@ fn a_link_stays_a_link_and_permissions_stay() {
     assert_eq!(names(&folder.path().join("real")), ["a.png", "b.png"]);
 }
 
-#[cfg(target_os = "linux")]
-#[test]
-fn devices_are_written_to_and_a_full_one_is_reported() {
-    use std::os::unix::fs::FileTypeExt;
-    let write = |path: &str| {
-        let mut file = OutputFile::open(Path::new(path)).unwrap();
-        let film = film_of(64, &ramp(64, 64), |_| {});
-        let picture = Picture {
-            format: Format::Gfilm,
-            sixteen_bit: false,
-            aovs: &[],
-        };
-        picture.write(&film, &mut file).and_then(|()| file.commit())
-    };
-    write("/dev/null").unwrap();
+/// A pipe with a name. These tests never name a device: run as root against a broken `OutputFile`, they would replace it.
+#[cfg(unix)]
+fn named_pipe(folder: &Path) -> std::path::PathBuf {
+    let path = folder.join("pipe.gfilm");
     assert!(
-        fs::metadata("/dev/null")
+        std::process::Command::new("mkfifo")
+            .arg(&path)
+            .status()
             .unwrap()
-            .file_type()
-            .is_char_device()
+            .success()
     );
-    let error = write("/dev/full").unwrap_err();
+    path
+}
+
+#[cfg(unix)]
+fn is_pipe(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    fs::symlink_metadata(path).unwrap().file_type().is_fifo()
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_regular_file_is_written_to_and_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = named_pipe(folder.path());
+    let (sender, receiver) = std::sync::mpsc::channel();
+    let reader = path.clone();
+    std::thread::spawn(move || sender.send(fs::read(reader).unwrap()));
+    let film = film_of(64, &ramp(64, 64), |_| {});
+    let mut file = OutputFile::open(&path).unwrap();
+    let picture = Picture {
+        format: Format::Gfilm,
+        sixteen_bit: false,
+        aovs: &[],
+    };
+    picture.write(&film, &mut file).unwrap();
+    file.commit().unwrap();
+    // A time limit: what was renamed away never ends the reader's wait.
+    let bytes = receiver
+        .recv_timeout(std::time::Duration::from_secs(10))
+        .unwrap();
+    assert_eq!(bytes, crate::encode(&film, Format::Gfilm, false));
+    assert!(is_pipe(&path));
+    assert_eq!(names(folder.path()), ["pipe.gfilm"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_error_that_shows_only_when_the_buffer_is_emptied_is_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = named_pipe(folder.path());
+    let (sender, receiver) = std::sync::mpsc::channel();
+    let reader = path.clone();
+    std::thread::spawn(move || sender.send(drop(fs::File::open(reader).unwrap())));
+    let mut file = OutputFile::open(&path).unwrap();
+    receiver
+        .recv_timeout(std::time::Duration::from_secs(10))
+        .unwrap();
+    // Nobody reads any more, but so little stays in the buffer until the end.
+    file.write_all(b"few bytes").unwrap();
+    let error = file.commit().unwrap_err();
     assert_eq!(error.exit_code(), 74);
-    assert!(error.to_string().contains("No space left"), "{error}");
+    assert!(
+        error
+            .to_string()
+            .starts_with(&format!("cannot write {}: ", path.display())),
+        "{error}"
+    );
 }

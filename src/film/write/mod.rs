@@ -4,6 +4,7 @@ mod exr;
 mod hdr;
 mod png;
 
+pub use hdr::rgbe;
 pub use png::write_rgb8;
 
 use super::{Film, FilmError, OutputFile, gfilm};

@@ -4,7 +4,7 @@ use super::context::Context;
 use super::device::DeviceChoice;
 use super::error::VulkanError;
 use super::memory::{Buffer, Place};
-use super::pace::{self, Pace};
+use super::pace::{self, Pace, Work};
 use super::plan::{self, QueuePlan};
 use super::queues::{Kernels, Queues};
 use super::scene::{FetchChoice, SceneBuffers};
@@ -199,16 +199,23 @@ fn run_batch(
             }
             queues.record_control_copy(r);
         })?;
+        let rays_before = tally.counters.closest_rays;
         let now = tally.read(queues)?;
-        let (lead, times) = pace::split(&submission.times);
-        tally.counters.other_s += lead;
-        for round in &times {
-            tally.counters.other_s += round.schedule;
-            tally.counters.extend_s += round.extend;
-            tally.counters.shadow_s += round.shadow;
-            tally.counters.shade_s += round.shade;
+        let times = pace::split(&submission.times);
+        if let Some((lead, stages)) = times {
+            tally.counters.other_s += lead + stages.schedule;
+            tally.counters.extend_s += stages.extend;
+            tally.counters.shadow_s += stages.shadow;
+            tally.counters.shade_s += stages.shade;
         }
-        pace.learn(&submission, &times, now, recorded == 0 && batch.slot_count >= limit);
+        let work = Work {
+            rounds: now,
+            rays: tally.counters.closest_rays - rays_before,
+            wall: submission.wall.as_secs_f64(),
+            stages: times.map(|(_, stages)| stages),
+        };
+        log::trace!("batch of {}: {rounds} rounds, chunks of {limit}: {work:?}", batch.slot_count);
+        pace.learn(&work);
         recorded += rounds;
         worked += now;
         if tally.last.done != 0 {

@@ -1,12 +1,15 @@
 //! Scene files: one file or folder per format.
 
 mod bounds;
+pub mod gltf;
 pub mod image;
+mod meter;
 pub mod obj;
 pub mod ply;
 mod polygon;
 pub mod staging;
 mod text;
+mod texture_files;
 pub mod toml;
 
 pub use self::toml::Override;
@@ -29,13 +32,17 @@ pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
         return toml::scene_from_text(path, text::utf8(path, text::read_bytes(path)?)?, overrides);
     }
     let mut scene = load_file(path)?;
+    // The stage is built for the size of the picture.
+    toml::override_film(&mut scene, overrides)?;
+    staging::stage(&mut scene);
     toml::override_settings(&mut scene, overrides)?;
     Ok(scene)
 }
 
-/// Loads a scene of a format that is not ours, staged.
+/// Loads what a file of a format that is not ours holds; what is missing is left to `staging`.
 fn load_file(path: &Path) -> Result<Scene, SceneError> {
     match extension(path).as_str() {
+        "gltf" | "glb" => gltf::load(path),
         "obj" => obj::load(path),
         "ply" => ply::load(path),
         found => {

@@ -23,9 +23,9 @@ const NO_CAMERA: Camera = Camera {
 };
 
 /// 30 degrees: little perspective, as in a photograph of a product.
-const FOV_Y: f32 = 0.523_598_8;
+const FOV_Y: f32 = std::f32::consts::FRAC_PI_6;
 /// 60 degrees, for rooms.
-const FOV_Y_ROOM: f32 = 1.047_197_6;
+const FOV_Y_ROOM: f32 = std::f32::consts::FRAC_PI_3;
 /// Part of the frame's half width that the model may fill.
 const FILL: f64 = 0.88;
 /// Irradiance of the key light over pi: what a white surface that faces it shows.

@@ -90,11 +90,11 @@ fn drop_unused(mut mesh: Mesh) -> Mesh {
         moved_to[corner as usize] = 0;
     }
     let mut kept = 0;
-    for old in 0..moved_to.len() {
-        if moved_to[old] == UNUSED {
+    for (old, new) in moved_to.iter_mut().enumerate() {
+        if *new == UNUSED {
             continue;
         }
-        moved_to[old] = kept as u32;
+        *new = kept as u32;
         mesh.positions[kept] = mesh.positions[old];
         mesh.normals[kept] = mesh.normals[old];
         mesh.uvs[kept] = mesh.uvs[old];

@@ -14,7 +14,8 @@ pub fn compute_smooth_normals(mesh: &mut Mesh, crease: f64) {
     let around = Incidence::new(mesh);
     let cos_crease = libm::cos(crease.clamp(0.0, std::f64::consts::PI));
     let mut split: HashMap<(u32, [u32; 3]), u32> = HashMap::new();
-    let mut normals = vec![Vec3::ZERO; mesh.positions.len()];
+    // What no face uses needs a unit normal too.
+    let mut normals = vec![Vec3::Y; mesh.positions.len()];
     let mut first_use = vec![true; mesh.positions.len()];
     for face in 0..mesh.triangles.len() {
         for k in 0..3 {
@@ -145,5 +146,81 @@ impl Incidence {
     fn faces(&self, vertex: u32) -> &[u32] {
         &self.faces
             [self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::shape::sphere_mesh;
+    use std::f64::consts::PI;
+
+    /// A unit cube whose eight vertices are shared.
+    fn shared_cube() -> Mesh {
+        let positions = (0..8)
+            .map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32))
+            .collect();
+        let quads = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        let triangles = quads
+            .iter()
+            .flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]])
+            .collect();
+        Mesh {
+            positions,
+            triangles,
+            ..Mesh::default()
+        }
+    }
+
+    #[test]
+    fn smooth_normals_keep_a_cubes_edges_and_round_a_sphere() {
+        let mut cube = shared_cube();
+        compute_smooth_normals(&mut cube, 0.7);
+        assert_eq!(cube.positions.len(), 24);
+        assert!(
+            cube.normals.iter().all(|n| n.abs().max_element() == 1.0),
+            "{:?}",
+            cube.normals
+        );
+        let mut round = shared_cube();
+        compute_smooth_normals(&mut round, PI);
+        assert_eq!(round.positions.len(), 8);
+        let mut sphere = sphere_mesh(1.0, 32);
+        let exact = std::mem::take(&mut sphere.normals);
+        compute_smooth_normals(&mut sphere, 1.0);
+        assert_eq!(sphere.positions.len(), exact.len());
+        assert!(
+            sphere
+                .normals
+                .iter()
+                .zip(&exact)
+                .all(|(a, b)| a.dot(*b) > 0.97)
+        );
+    }
+
+    #[test]
+    fn zero_and_infinite_normals_are_replaced_and_others_made_unit() {
+        let mut mesh = shared_cube();
+        mesh.normals = mesh
+            .positions
+            .iter()
+            .map(|p| (*p - Vec3::splat(0.5)) * 10.0)
+            .collect();
+        mesh.normals[0] = Vec3::ZERO;
+        mesh.normals[7] = Vec3::new(f32::NAN, 0.0, 1.0);
+        assert_eq!(repair_normals(&mut mesh), 2);
+        for (p, n) in mesh.positions.iter().zip(&mesh.normals) {
+            assert!(
+                (n.length() - 1.0).abs() < 1e-6 && n.dot(*p - Vec3::splat(0.5)) > 0.3,
+                "{p} {n}"
+            );
+        }
     }
 }

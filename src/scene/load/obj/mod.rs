@@ -6,13 +6,12 @@
 mod mtl;
 mod statement;
 
-use super::staging::{bare_scene, stage};
-use super::text::read_bytes;
 use super::polygon::triangulate;
+use super::staging::bare_scene;
+use super::text::read_bytes;
+use super::texture_files::{TextureFiles, intern};
 use crate::scene::shape::{compute_smooth_normals, repair_normals};
-use crate::scene::{
-    Geometry, Location, Material, MaterialId, Mesh, MeshId, Object, Scene, SceneError, TextureId, Transform,
-};
+use crate::scene::{Geometry, Location, Material, MaterialId, Mesh, MeshId, Object, Scene, SceneError, Transform};
 use glam::{Vec2, Vec3};
 use statement::{Statement, statements};
 use std::collections::HashMap;
@@ -60,7 +59,7 @@ const SKIPPED: &[(&str, bool)] = &[
     ("vp", true),
 ];
 
-/// Loads the file as a scene, staged.
+/// Loads the file as a scene of one mesh. `load::load` stages it.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
     let mut scene = bare_scene(path);
     let bytes = read_bytes(path)?;
@@ -78,7 +77,6 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         casts_shadow: None,
     });
     scene.meshes.push(mesh);
-    stage(&mut scene);
     Ok(scene)
 }
 
@@ -95,6 +93,7 @@ struct Reader<'s> {
     /// Vertices of `mesh` by position, texture coordinate and normal.
     vertices: HashMap<[u32; 3], u32>,
     library: HashMap<String, mtl::Entry>,
+    files: TextureFiles,
     /// Materials of the scene by the name that `usemtl` said.
     materials: HashMap<String, MaterialId>,
     current: Option<MaterialId>,
@@ -120,6 +119,7 @@ impl<'s> Reader<'s> {
             mesh: Mesh { name, ..Mesh::default() },
             vertices: HashMap::new(),
             library: HashMap::new(),
+            files: TextureFiles::default(),
             materials: HashMap::new(),
             current: None,
             smooth: false,
@@ -218,7 +218,8 @@ impl<'s> Reader<'s> {
                 continue;
             }
             let kind = ["vertex", "texture coordinate", "normal"][part];
-            let index: i64 = text.parse().map_err(|_| bad(format!("expected the index of a {kind}, found {text:?}")))?;
+            let index: i64 =
+                text.parse().map_err(|_| bad(format!("expected the index of a {kind}, found {text:?}")))?;
             let count = counts[part] as i64;
             key[part] = match index {
                 1.. if index <= count => (index - 1) as u32,
@@ -272,21 +273,14 @@ impl<'s> Reader<'s> {
             return Ok(*id);
         }
         let (mut material, texture) = match self.library.get(name) {
-            Some(entry) => entry.material(name, &mut self.scene.warnings),
+            Some(entry) => entry.material(name, &mut self.files, &mut self.scene.warnings),
             None => {
                 let message = format!("{}: there is no material {name:?}: it is grey", statement.location());
                 self.scene.warnings.push(message);
                 (Material::grey(name), None)
             }
         };
-        material.color_texture = texture.map(|texture| {
-            let textures = &mut self.scene.textures;
-            let known = textures.iter().position(|other| *other == texture);
-            TextureId(known.unwrap_or_else(|| {
-                textures.push(texture);
-                textures.len() - 1
-            }) as u32)
-        });
+        material.color_texture = texture.map(|texture| intern(&mut self.scene.textures, texture));
         let id = self.add_material(material);
         self.materials.insert(name.to_owned(), id);
         Ok(id)
@@ -318,7 +312,7 @@ impl<'s> Reader<'s> {
             self.scene.warnings.push(format!("{file}: ignored: {}", self.skipped.join(", ")));
         }
         if self.degenerate > 0 {
-            let message = format!("{file}: {} triangles with a repeated corner left out", self.degenerate);
+            let message = format!("{file}: triangles with a repeated corner left out: {}", self.degenerate);
             self.scene.warnings.push(message);
         }
         Ok((self.mesh, material))

@@ -3,8 +3,9 @@
 //! Source: Alias|Wavefront, Advanced Visualizer manual, appendix B1 "Material library file (.mtl)", 1995.
 
 use super::statement::{Statement, statements};
-use crate::scene::load::image::{ColorSpace, load_texture};
+use crate::scene::load::image::ColorSpace;
 use crate::scene::load::text::read_bytes;
+use crate::scene::load::texture_files::TextureFiles;
 use crate::scene::{Material, Model, Rgb, SceneError, Texture, Transparency, Wrap};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -130,8 +131,13 @@ impl Entry {
     /// The house's material: illum 0 is unlit, 1 Lambert, 2 Blinn-Phong ("Blinn's interpretation of Phong"), 3, 5 and 8
     /// with a mirror branch, 4, 6 and 7 a dielectric if there is an index; what else is not opaque lets the background through.
     /// The texture that multiplies its colour is returned beside it.
-    pub fn material(&self, name: &str, warnings: &mut Vec<String>) -> (Material, Option<Texture>) {
-        let texture = self.map.as_ref().and_then(|map| map.load(warnings));
+    pub fn material(
+        &self,
+        name: &str,
+        files: &mut TextureFiles,
+        warnings: &mut Vec<String>,
+    ) -> (Material, Option<Texture>) {
+        let texture = self.map.as_ref().and_then(|map| map.load(files, warnings));
         let k_s = self.specular.max_element();
         let shiny = k_s > 0.0 && self.illum != Some(1);
         let refracts = matches!(self.illum, Some(4 | 6 | 7)) && (self.eta - 1.0).abs() > 1.0e-3 && self.eta >= 0.01;
@@ -197,7 +203,9 @@ impl Map {
             let (count, all_numbers) = match option {
                 "-s" | "-o" | "-t" => (3, true),
                 "-mm" => (2, true),
-                "-blendu" | "-blendv" | "-clamp" | "-cc" | "-imfchan" | "-type" | "-boost" | "-bm" | "-texres" => (1, false),
+                "-blendu" | "-blendv" | "-clamp" | "-cc" | "-imfchan" | "-type" | "-boost" | "-bm" | "-texres" => {
+                    (1, false)
+                }
                 // A file name may begin so.
                 _ => break,
             };
@@ -240,8 +248,8 @@ impl Map {
         Ok(())
     }
 
-    fn load(&self, warnings: &mut Vec<String>) -> Option<Texture> {
-        match load_texture(&self.file, ColorSpace::Srgb) {
+    fn load(&self, files: &mut TextureFiles, warnings: &mut Vec<String>) -> Option<Texture> {
+        match files.load(&self.file, ColorSpace::Srgb) {
             Ok(texture) => Some(Texture {
                 wrap_u: self.wrap,
                 wrap_v: self.wrap,

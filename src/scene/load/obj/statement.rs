@@ -15,7 +15,7 @@ pub struct Statement<'a> {
 
 /// All statements of a file, in order.
 pub fn statements<'a>(file: &'a Path, text: &'a str) -> impl Iterator<Item = Statement<'a>> {
-    let mut lines = text.lines().zip(1..);
+    let mut lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
     std::iter::from_fn(move || {
         let (first, line) = lines.next()?;
         let mut text = Cow::Borrowed(first);
@@ -84,7 +84,9 @@ impl<'a> Statement<'a> {
     pub fn number(&self, word: &str) -> Result<f32, SceneError> {
         match word.parse::<f32>() {
             Ok(number) if f64::from(number.abs()) <= LARGEST => Ok(number),
-            Ok(_) => Err(SceneError::bad(self.location_of(word), format!("{word:?} is not a finite number up to 1e12"))),
+            Ok(_) => {
+                Err(SceneError::bad(self.location_of(word), format!("{word:?} is not a finite number up to 1e12")))
+            }
             Err(_) => Err(SceneError::bad(self.location_of(word), format!("expected a number, found {word:?}"))),
         }
     }
@@ -95,7 +97,8 @@ impl<'a> Statement<'a> {
         let mut words = self.words();
         for (index, number) in numbers.iter_mut().enumerate() {
             let Some(word) = words.next() else {
-                return Err(self.bad(format!("{:?} needs {N} numbers, found {index}", self.keyword())));
+                let numbers = if N == 1 { "number" } else { "numbers" };
+                return Err(self.bad(format!("{:?} needs {N} {numbers}, found {index}", self.keyword())));
             };
             *number = self.number(word)?;
         }

@@ -204,8 +204,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Failure> {
 
 /// The line that starts at `at`, without its end, and where the next one starts. Ends are \n, \r\n or a lone \r.
 fn next_line(bytes: &[u8], at: usize) -> Option<(&[u8], usize)> {
-    let rest = bytes.get(at..)?;
-    let length = rest.iter().position(|b| *b == b'\n' || *b == b'\r')?;
+    let rest = bytes.get(at..).filter(|rest| !rest.is_empty())?;
+    let Some(length) = rest.iter().position(|b| *b == b'\n' || *b == b'\r') else {
+        // The last line of the header may be the last of the file.
+        return (rest == b"end_header").then_some((rest, bytes.len()));
+    };
     let end = if rest[length..].starts_with(b"\r\n") {
         length + 2
     } else {

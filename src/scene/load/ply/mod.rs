@@ -26,7 +26,7 @@ enum Place {
 /// Edges sharper than this stay sharp where a file has no normals, radians (40 degrees).
 const CREASE: f64 = 0.698;
 
-/// Loads the file as a scene: the mesh, smooth where it has no normals of its own, in the house's grey, staged.
+/// Loads the file as a scene: the mesh, smooth where it has no normals of its own, in the house's grey. `load::load` stages it.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
     let mut mesh = read_mesh(path)?;
     if mesh.normals.is_empty() {
@@ -42,7 +42,6 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         casts_shadow: None,
     });
     scene.meshes.push(mesh);
-    staging::stage(&mut scene);
     Ok(scene)
 }
 
@@ -120,7 +119,7 @@ fn parse(bytes: &[u8]) -> Result<Mesh, Failure> {
 /// Refuses a count that the rest of the file cannot hold, before memory is taken for it.
 fn check_count(element: &Element, header: &Header, reader: &Reader) -> Result<(), Failure> {
     // The last number of a text file needs no separator.
-    let room = reader.remaining() as u64 + 1;
+    let room = reader.remaining() as u64 + u64::from(header.encoding == header::Encoding::Ascii);
     let needed = element
         .count
         .saturating_mul(element.size_min(header.encoding) as u64);
@@ -130,7 +129,7 @@ fn check_count(element: &Element, header: &Header, reader: &Reader) -> Result<()
             element.name,
             element.count,
             element.size_min(header.encoding),
-            room - 1
+            reader.remaining()
         );
         return Err((reader.place(), message));
     }

@@ -77,7 +77,9 @@ mod tests {
 
     #[test]
     fn what_is_no_colour_is_refused() {
-        for text in ["#12", "#1234567", "#gg0000", "#+12", "#é1", "octarine", "[1, 2]", "[0, 0, 1.5]", "-0.1", "nan", "true"] {
+        for text in
+            ["#12", "#1234567", "#gg0000", "#+12", "#é1", "octarine", "[1, 2]", "[0, 0, 1.5]", "-0.1", "nan", "true"]
+        {
             assert_eq!(read(text), None, "{text}");
         }
     }

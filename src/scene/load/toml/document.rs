@@ -165,11 +165,9 @@ fn value_from(value: &DeValue<'_>, place: &dyn Fn(usize) -> Place, offset: usize
         DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
             .map(Value::Integer)
             .map_err(|_| (offset, format!("the integer {number} does not fit in 64 bits")))?,
-        DeValue::Float(number) => number
-            .as_str()
-            .parse()
-            .map(Value::Float)
-            .map_err(|_| (offset, format!("{number} is not a number")))?,
+        DeValue::Float(number) => {
+            number.as_str().parse().map(Value::Float).map_err(|_| (offset, format!("{number} is not a number")))?
+        }
         DeValue::Boolean(flag) => Value::Boolean(*flag),
         DeValue::Datetime(_) => Value::Datetime,
         DeValue::Array(items) => Value::Array(

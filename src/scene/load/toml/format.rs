@@ -1,6 +1,6 @@
 //! The tables of the format (see `keys`), in the order of scenes/README.md.
 
-use super::keys::{Key, Kind, LARGEST, Range, Section, key};
+use super::keys::{Key, Kind, Range, Section, key};
 
 const ONE_OR_MORE: &str = "one or more tables";
 
@@ -23,14 +23,34 @@ pub static RENDER: Section = Section {
     name: "[render]",
     noun: "[render]",
     keys: &[
-        key("integrator", Kind::Choice(&["local", "whitted"]), "`\"whitted\"`", "`local`: the illumination model alone, with shadows. `whitted`: mirror and refracted rays as well (Whitted 1980)"),
+        key(
+            "integrator",
+            Kind::Choice(&["local", "whitted"]),
+            "`\"whitted\"`",
+            "`local`: the illumination model alone, with shadows. `whitted`: mirror and refracted rays as well (Whitted 1980)",
+        ),
         key("samples", Kind::Integer { min: 1, max: 1 << 24 }, "16", "Samples a pixel"),
         key("seed", Kind::Integer { min: 0, max: u32::MAX as i64 }, "0", "Another seed, another noise"),
-        key("sampler", Kind::Choice(&["sobol", "stratified", "independent"]), "`\"sobol\"`", "Owen-scrambled Sobol' points (Burley 2020), jittered strata, or plain random numbers"),
+        key(
+            "sampler",
+            Kind::Choice(&["sobol", "stratified", "independent"]),
+            "`\"sobol\"`",
+            "Owen-scrambled Sobol' points (Burley 2020), jittered strata, or plain random numbers",
+        ),
         key("max_depth", Kind::Integer { min: 0, max: 64 }, "8", "Mirror and refraction events a path may have"),
-        key("min_weight", Kind::Number(Range::UNIT), "0.003", "Branches that add less than this share to the pixel are cut"),
+        key(
+            "min_weight",
+            Kind::Number(Range::UNIT),
+            "0.003",
+            "Branches that add less than this share to the pixel are cut",
+        ),
         key("shadows", Kind::Boolean, "true", "Trace shadow rays"),
-        key("intensity", Kind::Choice(&["lecture", "radiometric"]), "`\"radiometric\"`", "What the `intensity` of lights means. `radiometric`: W/sr (directional: W/m²). `lecture`: the I_p of textbooks, that divided by π, so that a white surface facing the light shows I_p"),
+        key(
+            "intensity",
+            Kind::Choice(&["lecture", "radiometric"]),
+            "`\"radiometric\"`",
+            "What the `intensity` of lights means. `radiometric`: W/sr (directional: W/m²). `lecture`: the I_p of textbooks, that divided by π, so that a white surface facing the light shows I_p",
+        ),
         key("ambient", Kind::Color(Range::NOT_NEGATIVE), "0", "I_a, the radiance of the ambient term k_a I_a O_d"),
     ],
 };
@@ -40,9 +60,24 @@ pub static FILM: Section = Section {
     noun: "[film]",
     keys: &[
         key("size", Kind::Special("two integers [width, height] from 1 to 65535"), "[1280, 720]", "Pixels"),
-        key("filter", Kind::Special("\"box\", \"tent\", \"gaussian\", \"mitchell\" or a table"), "`\"mitchell\"`", "Reconstruction filter; the table's keys are below"),
-        key("unit", Kind::Special("a power of two from 2^-40 to 2^40"), "1", "The radiance of one film unit: raise it for scenes brighter than about 65,000, lower it for very dim ones"),
-        key("tonemap", Kind::Choice(&["clamp", "normalise", "reinhard"]), "`\"clamp\"`", "Display: cut at 1, divide by the image's maximum, or L/(1+L)"),
+        key(
+            "filter",
+            Kind::Special("\"box\", \"tent\", \"gaussian\", \"mitchell\" or a table"),
+            "`\"mitchell\"`",
+            "Reconstruction filter; the table's keys are below",
+        ),
+        key(
+            "unit",
+            Kind::Special("a power of two from 2^-40 to 2^40"),
+            "1",
+            "The radiance of one film unit: raise it for scenes brighter than about 65,000, lower it for very dim ones",
+        ),
+        key(
+            "tonemap",
+            Kind::Choice(&["clamp", "normalise", "reinhard"]),
+            "`\"clamp\"`",
+            "Display: cut at 1, divide by the image's maximum, or L/(1+L)",
+        ),
         key("exposure", Kind::Number(Range::new(-64.0, 64.0)), "0", "Display: stops; +1 doubles"),
     ],
 };
@@ -52,7 +87,12 @@ pub static FILTER: Section = Section {
     noun: "a filter",
     keys: &[
         key("type", Kind::Choice(&["box", "tent", "gaussian", "mitchell"]), "required", "Its shape"),
-        key("radius", Kind::Number(Range::above(0.0, 16.0)), "box 0.5, tent 1, gaussian 1.5, mitchell 2", "Half width, pixels"),
+        key(
+            "radius",
+            Kind::Number(Range::above(0.0, 16.0)),
+            "box 0.5, tent 1, gaussian 1.5, mitchell 2",
+            "Half width, pixels",
+        ),
         key("sigma", Kind::Number(Range::above(0.0, 16.0)), "0.5", "Standard deviation, pixels").only(&["gaussian"]),
         key("b", Kind::Number(Range::UNIT), "1/3", "B of Mitchell and Netravali 1988").only(&["mitchell"]),
         key("c", Kind::Number(Range::UNIT), "1/3", "C of Mitchell and Netravali 1988").only(&["mitchell"]),
@@ -66,10 +106,23 @@ pub static CAMERA: Section = Section {
         key("eye", Kind::Vector, "required", "Position"),
         key("target", Kind::Vector, "[0, 0, 0]", "The point in the middle of the picture"),
         key("up", Kind::Vector, "[0, 1, 0]", "What points up in the picture; any length, not along the view"),
-        key("projection", Kind::Choice(&["perspective", "orthographic"]), "`\"perspective\"`", "Orthographic is the eye at infinity"),
-        key("fov", Kind::Number(Range::new(0.01, 179.0)), "45", "Full vertical field of view, degrees").only(&["perspective"]),
-        key("fov_x", Kind::Number(Range::new(0.01, 179.0)), "none", "Full horizontal field of view, degrees, instead of `fov`").only(&["perspective"]),
-        key("height", Kind::Number(Range::POSITIVE), "required", "Height of the view, scene units").only(&["orthographic"]),
+        key(
+            "projection",
+            Kind::Choice(&["perspective", "orthographic"]),
+            "`\"perspective\"`",
+            "Orthographic is the eye at infinity",
+        ),
+        key("fov", Kind::Number(Range::new(0.01, 179.0)), "45", "Full vertical field of view, degrees")
+            .only(&["perspective"]),
+        key(
+            "fov_x",
+            Kind::Number(Range::new(0.01, 179.0)),
+            "none",
+            "Full horizontal field of view, degrees, instead of `fov`",
+        )
+        .only(&["perspective"]),
+        key("height", Kind::Number(Range::POSITIVE), "required", "Height of the view, scene units")
+            .only(&["orthographic"]),
     ],
 };
 
@@ -78,7 +131,12 @@ pub static BACKGROUND: Section = Section {
     noun: "[background]",
     keys: &[
         key("color", Kind::Color(Range::NOT_NEGATIVE), "0", "Radiance in every direction"),
-        key("bottom", Kind::Color(Range::NOT_NEGATIVE), "0", "Radiance straight down (-y), instead of `color`; between the two the gradient is linear in y"),
+        key(
+            "bottom",
+            Kind::Color(Range::NOT_NEGATIVE),
+            "0",
+            "Radiance straight down (-y), instead of `color`; between the two the gradient is linear in y",
+        ),
         key("top", Kind::Color(Range::NOT_NEGATIVE), "0", "Radiance straight up (+y)"),
     ],
 };
@@ -121,9 +179,19 @@ pub static TEXTURE: Section = Section {
     noun: "a texture",
     keys: &[
         key("file", Kind::Text, "required", "PNG, JPEG, WebP or Radiance HDR, relative to the scene file"),
-        key("wrap", Kind::Special("\"repeat\", \"clamp\", \"mirror\" or two of them [u, v]"), "`\"repeat\"`", "What lies beyond the image's edge"),
+        key(
+            "wrap",
+            Kind::Special("\"repeat\", \"clamp\", \"mirror\" or two of them [u, v]"),
+            "`\"repeat\"`",
+            "What lies beyond the image's edge",
+        ),
         key("filter", Kind::Choice(&["bilinear", "nearest"]), "`\"bilinear\"`", "Between texels"),
-        key("scale", Kind::Special("a number or two numbers [u, v]"), "1", "uv' = uv * scale + offset; 4 repeats the image four times"),
+        key(
+            "scale",
+            Kind::Special("a number or two numbers [u, v]"),
+            "1",
+            "uv' = uv * scale + offset; 4 repeats the image four times",
+        ),
         key("offset", Kind::Special("a number or two numbers [u, v]"), "0", "See `scale`"),
         key("colorspace", Kind::Choice(&["srgb", "linear"]), "`\"srgb\"`", "Encoding of 8-bit images"),
     ],
@@ -139,11 +207,27 @@ pub static LOBE: Section = Section {
 };
 
 /// The keys that place a thing, the same everywhere: scale, then rotate, then translate.
-const SCALE: Key = key("scale", Kind::Special("a number or three numbers [x, y, z], none 0"), "1", "Applied first; negative mirrors");
-const ROTATE: Key = key("rotate", Kind::Special("four numbers [x, y, z, degrees]"), "none", "About an axis through the origin, counter-clockwise seen from its tip; applied second");
+const SCALE: Key =
+    key("scale", Kind::Special("a number or three numbers [x, y, z], none 0"), "1", "Applied first; negative mirrors");
+const ROTATE: Key = key(
+    "rotate",
+    Kind::Special("four numbers [x, y, z, degrees]"),
+    "none",
+    "About an axis through the origin, counter-clockwise seen from its tip; applied second",
+);
 const TRANSLATE: Key = key("translate", Kind::Vector, "[0, 0, 0]", "Applied last");
-const MATRIX: Key = key("matrix", Kind::Special("four rows of four numbers"), "none", "Instead of the other three: column vectors, last row [0, 0, 0, 1]");
-const TRANSFORM: Key = key("transform", Kind::Special("an array of tables"), "none", "Steps in the order they are applied, instead of the keys above");
+const MATRIX: Key = key(
+    "matrix",
+    Kind::Special("four rows of four numbers"),
+    "none",
+    "Instead of the other three: column vectors, last row [0, 0, 0, 1]",
+);
+const TRANSFORM: Key = key(
+    "transform",
+    Kind::Special("an array of tables"),
+    "none",
+    "Steps in the order they are applied, instead of the keys above",
+);
 
 pub static OBJECT: Section = Section {
     name: "[[object]]",
@@ -189,13 +273,11 @@ pub static NOISE: Section = Section {
     ],
 };
 
-pub const SHAPES: &[&str] = &["sphere", "quad", "box", "disk", "cylinder", "cone", "torus", "lathe", "teapot", "heightfield", "mesh"];
+pub const SHAPES: &[&str] =
+    &["sphere", "quad", "box", "disk", "cylinder", "cone", "torus", "lathe", "teapot", "heightfield", "mesh"];
 
-pub static STEP: Section = Section {
-    name: "transform = [{ … }]",
-    noun: "a transform step",
-    keys: &[SCALE, ROTATE, TRANSLATE, MATRIX],
-};
+pub static STEP: Section =
+    Section { name: "transform = [{ … }]", noun: "a transform step", keys: &[SCALE, ROTATE, TRANSLATE, MATRIX] };
 
 pub static INSTANCE: Section = Section {
     name: "instances = [{ … }]",
@@ -214,8 +296,18 @@ pub static GRID: Section = Section {
     name: "grid = { … }",
     noun: "a grid",
     keys: &[
-        key("count", Kind::Special("three integers [x, y, z] from 1, at most 1048576 copies in all"), "required", "Copies along each axis"),
-        key("spacing", Kind::Vector, "required", "Distance between copies, scene units; the block is centred on the object's place"),
+        key(
+            "count",
+            Kind::Special("three integers [x, y, z] from 1, at most 1048576 copies in all"),
+            "required",
+            "Copies along each axis",
+        ),
+        key(
+            "spacing",
+            Kind::Vector,
+            "required",
+            "Distance between copies, scene units; the block is centred on the object's place",
+        ),
     ],
 };
 
@@ -242,7 +334,19 @@ pub static LIGHT: Section = Section {
 
 /// All of them.
 pub static SECTIONS: &[&Section] = &[
-    &SCENE, &RENDER, &FILM, &FILTER, &CAMERA, &BACKGROUND, &MATERIAL, &TEXTURE, &LOBE, &OBJECT, &NOISE, &STEP, &INSTANCE, &GRID, &LIGHT,
+    &SCENE,
+    &RENDER,
+    &FILM,
+    &FILTER,
+    &CAMERA,
+    &BACKGROUND,
+    &MATERIAL,
+    &TEXTURE,
+    &LOBE,
+    &OBJECT,
+    &NOISE,
+    &STEP,
+    &INSTANCE,
+    &GRID,
+    &LIGHT,
 ];
-
-const _: () = assert!(LARGEST < 1.0e15);

@@ -30,7 +30,10 @@ pub struct Key {
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     Boolean,
-    Integer { min: i64, max: i64 },
+    Integer {
+        min: i64,
+        max: i64,
+    },
     Number(Range),
     Text,
     Choice(&'static [&'static str]),
@@ -95,7 +98,7 @@ impl Kind {
             Self::Boolean => "true or false".to_owned(),
             Self::Integer { min, max } => format!("an integer from {min} to {max}"),
             Self::Number(range) => format!("a number{}", range.describe()),
-            Self::Text => "a string".to_owned(),
+            Self::Text => "a non-empty string".to_owned(),
             Self::Choice(names) => list(names),
             Self::Color(range) => format!("a colour{}", range.describe()),
             Self::Vector => "three numbers [x, y, z]".to_owned(),
@@ -166,7 +169,12 @@ pub const SYNONYMS: &[(&str, &str)] = &[
     ("from", "eye"),
     ("height_px", "size"),
     ("ior", "eta"),
+    ("ka", "k_a"),
+    ("kd", "k_d"),
     ("kind", "type"),
+    ("kr", "k_r"),
+    ("ks", "k_s"),
+    ("kt", "k_t"),
     ("location", "translate"),
     ("look_at", "target"),
     ("lookat", "target"),

@@ -82,7 +82,9 @@ fn read_attenuation(table: &Reader, unit: IntensityUnit) -> Result<Attenuation> 
         Value::String(text) if text == "inverse-square" => Ok(Attenuation::InverseSquare),
         Value::String(text) if text == "none" => Ok(Attenuation::None),
         Value::Array(_) => match numbers::<3>(node, Range::NOT_NEGATIVE) {
-            Some([0.0, 0.0, 0.0]) => Err(table.bad("attenuation", "\"attenuation\" has three zeros: it divides by nothing")),
+            Some([0.0, 0.0, 0.0]) => {
+                Err(table.bad("attenuation", "\"attenuation\" has three zeros: it divides by nothing"))
+            }
             Some(c) => {
                 let [c1, c2, c3] = c.map(|number| number as f32);
                 Ok(Attenuation::Polynomial { c1, c2, c3 })

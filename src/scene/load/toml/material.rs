@@ -205,9 +205,7 @@ fn read_color(table: &Reader, model: &Model, textured: bool) -> Result<Rgb> {
 }
 
 fn read_transparency(table: &Reader) -> Result<Option<Transparency>> {
-    let filtered = table
-        .choice("transparency_mode", &[("interpolated", false), ("filtered", true)])?
-        .unwrap_or(false);
+    let filtered = table.choice("transparency_mode", &[("interpolated", false), ("filtered", true)])?.unwrap_or(false);
     let color = table.color("transparency_color")?;
     if color.is_some() && !filtered {
         let message = "\"transparency_color\" needs transparency_mode = \"filtered\"";

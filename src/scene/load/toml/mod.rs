@@ -52,6 +52,13 @@ pub fn scene_from_text(file: &Path, text: String, overrides: &[Override]) -> Res
     Ok(scene)
 }
 
+/// Changes what `[film]` says of a scene that came from another format.
+pub fn override_film(scene: &mut Scene, overrides: &[Override]) -> Result<(), SceneError> {
+    let mut document = Document::empty(Path::new(&scene.name));
+    document.apply(overrides)?;
+    read_film(&Reader::open(&document, &document.root, &SCENE)?, &mut scene.film)
+}
+
 /// Changes what `[render]`, `[film]` and `[camera]` say of a scene that came from another format.
 pub fn override_settings(scene: &mut Scene, overrides: &[Override]) -> Result<(), SceneError> {
     let mut document = Document::empty(Path::new(&scene.name));
@@ -86,9 +93,10 @@ pub fn key_tables() -> Vec<(&'static str, String)> {
 
 /// A picture that can only be black deserves a word.
 fn warn_dark(scene: &mut Scene) {
-    let glows = scene.materials.iter().any(|material| {
-        material.emission != Rgb::ZERO || matches!(material.model, crate::scene::Model::Emissive)
-    });
+    let glows = scene
+        .materials
+        .iter()
+        .any(|material| material.emission != Rgb::ZERO || matches!(material.model, crate::scene::Model::Emissive));
     let surrounded = scene.background.bottom != Rgb::ZERO || scene.background.top != Rgb::ZERO;
     if scene.lights.is_empty() && scene.ambient == Rgb::ZERO && !glows && !surrounded {
         scene.warnings.push(format!("{}: the scene has no light: the picture will be black", scene.name));

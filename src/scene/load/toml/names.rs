@@ -20,7 +20,7 @@ impl Names {
     pub fn declare(&mut self, table: &Reader, name: &str) -> Result<String> {
         if let Some((_, first)) = self.indices.get(name) {
             let line = if first.line > 0 { format!(" in line {}", first.line) } else { String::new() };
-            return Err(table.bad("name", format!("there is already a {} named {name:?}{line}", self.kind)));
+            return Err(table.bad("name", format!("the {} name {name:?} is already given{line}", self.kind)));
         }
         let place = table.node("name").map_or(table.place, |node| node.place);
         self.indices.insert(name.to_owned(), (self.indices.len(), table.document.location(place)));

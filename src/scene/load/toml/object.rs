@@ -141,6 +141,10 @@ impl Objects<'_> {
                 Normals::Smooth => compute_smooth_normals(mesh, crease),
             }
         }
+        if !loaded.lights.is_empty() {
+            let message = format!("{}: its {} lights are left out of this scene", loaded.name, loaded.lights.len());
+            self.scene.warnings.push(message);
+        }
         let pieces = self.merge(loaded);
         self.files.insert(key, pieces.clone());
         Ok(pieces)

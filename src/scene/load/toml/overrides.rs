@@ -51,7 +51,8 @@ impl Document {
         for change in overrides {
             let place = Place::Override(self.overrides.len());
             self.overrides.push(change.to_string());
-            let outcome = parse_value(&change.value, place).and_then(|value| set(&mut self.root, &change.path, value, place));
+            let outcome =
+                parse_value(&change.value, place).and_then(|value| set(&mut self.root, &change.path, value, place));
             outcome.map_err(|message| self.bad(place, message))?;
         }
         Ok(())

@@ -70,7 +70,8 @@ impl<'a> Reader<'a> {
             if !only.is_empty() && !only.contains(&value) {
                 let location = self.document.location(entry.key_place);
                 let (key, allowed) = (&entry.key, list(only));
-                warnings.push(format!("{location}: {key:?} has no effect with {switch} = {value:?}, only with {allowed}"));
+                warnings
+                    .push(format!("{location}: {key:?} has no effect with {switch} = {value:?}, only with {allowed}"));
             }
         }
     }
@@ -228,7 +229,7 @@ fn unknown_key(key: &str, section: &Section) -> String {
     let names = section.keys.iter().map(|key| key.name);
     let synonyms = SYNONYMS.iter().filter(|(_, ours)| section.key(ours).is_some());
     // A word of another program counts if it is exactly that, or if nothing of ours looks alike.
-    let exact = synonyms.clone().find(|(word, _)| *word == key).map(|(_, ours)| *ours);
+    let exact = synonyms.clone().find(|(word, _)| word.eq_ignore_ascii_case(key)).map(|(_, ours)| *ours);
     let translated = |word| synonyms.clone().find(|(theirs, _)| *theirs == word).map(|(_, ours)| *ours);
     let suggestion = exact
         .or_else(|| nearest(key, names.clone()))

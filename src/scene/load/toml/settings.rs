@@ -2,8 +2,8 @@
 
 use super::document::Value;
 use super::format::{BACKGROUND, CAMERA, FILM, FILTER, RENDER};
-use super::reader::{Reader, Result, in_range};
 use super::keys::Range;
+use super::reader::{Reader, Result, in_range};
 use crate::scene::{
     Background, Camera, Film, Filter, Integrator, IntensityUnit, Projection, RenderSettings, Sampler, ToneMap,
 };
@@ -48,8 +48,7 @@ pub fn read_film(root: &Reader, film: &mut Film) -> Result<()> {
     set(&mut film.filter, read_filter(&table)?);
     if let Some(node) = table.node("unit") {
         let exponent = in_range(node, Range::POSITIVE).and_then(power_of_two);
-        film.unit_exponent =
-            exponent.filter(|e| (-40..=40).contains(e)).ok_or_else(|| table.mismatch("unit", node))?;
+        film.unit_exponent = exponent.filter(|e| (-40..=40).contains(e)).ok_or_else(|| table.mismatch("unit", node))?;
     }
     set(&mut film.tonemap, table.choice("tonemap", &tonemaps)?);
     set(&mut film.exposure, table.float("exposure")?);
@@ -80,7 +79,9 @@ fn read_filter(film: &Reader) -> Result<Option<Filter>> {
     Ok(Some(match shape {
         "tent" => Filter::Tent { radius: number("radius", 1.0)? },
         "gaussian" => Filter::Gaussian { radius: number("radius", 1.5)?, sigma: number("sigma", 0.5)? },
-        "mitchell" => Filter::Mitchell { radius: number("radius", 2.0)?, b: number("b", third)?, c: number("c", third)? },
+        "mitchell" => {
+            Filter::Mitchell { radius: number("radius", 2.0)?, b: number("b", third)?, c: number("c", third)? }
+        }
         _ => Filter::Box { radius: number("radius", 0.5)? },
     }))
 }
@@ -148,7 +149,9 @@ fn check_view(table: &Reader, camera: &Camera) -> Result<()> {
     // The sine of their angle; below this single precision has no right-hand side left.
     if up.cross(forward).length() < 1.0e-5 * up.length() * far {
         let [x, y, z] = camera.up.to_array();
-        return Err(table.bad("up", format!("\"up\" = [{x}, {y}, {z}] is parallel to the view; choose another direction")));
+        return Err(
+            table.bad("up", format!("\"up\" = [{x}, {y}, {z}] is parallel to the view; choose another direction"))
+        );
     }
     Ok(())
 }

@@ -4,7 +4,8 @@ use super::document::{Document, Value};
 use super::format::TEXTURE;
 use super::keys::Range;
 use super::reader::{Reader, Result};
-use crate::scene::load::image::{ColorSpace, load_texture};
+use crate::scene::load::image::ColorSpace;
+use crate::scene::load::texture_files::{TextureFiles, intern};
 use crate::scene::{SceneError, Texture, TextureId, Wrap};
 use std::path::{Path, PathBuf};
 
@@ -12,6 +13,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Default)]
 pub struct Textures {
     pub list: Vec<Texture>,
+    files: TextureFiles,
 }
 
 impl Textures {
@@ -19,37 +21,36 @@ impl Textures {
     pub fn read(&mut self, material: &Reader) -> Result<Option<TextureId>> {
         let Some(node) = material.node("texture") else { return Ok(None) };
         let texture = match &node.value {
-            Value::String(file) => load(material, "texture", file, ColorSpace::Srgb)?,
-            Value::Table(_) => read_table(&Reader::open(material.document, node, &TEXTURE)?)?,
+            Value::String(file) => self.load(material, "texture", file, ColorSpace::Srgb)?,
+            Value::Table(_) => self.read_table(&Reader::open(material.document, node, &TEXTURE)?)?,
             _ => return Err(material.mismatch("texture", node)),
         };
-        let known = self.list.iter().position(|other| *other == texture);
-        let index = known.unwrap_or_else(|| {
-            self.list.push(texture);
-            self.list.len() - 1
-        });
-        Ok(Some(TextureId(index as u32)))
+        Ok(Some(intern(&mut self.list, texture)))
     }
-}
 
-fn read_table(table: &Reader) -> Result<Texture> {
-    let file = table.required("file", table.text("file")?)?;
-    let space = table.choice("colorspace", &[("srgb", ColorSpace::Srgb), ("linear", ColorSpace::Linear)])?;
-    let mut texture = load(table, "file", file, space.unwrap_or_default())?;
-    if let Some(bilinear) = table.choice("filter", &[("bilinear", true), ("nearest", false)])? {
-        texture.bilinear = bilinear;
+    fn read_table(&mut self, table: &Reader) -> Result<Texture> {
+        let file = table.required("file", table.text("file")?)?;
+        let space = table.choice("colorspace", &[("srgb", ColorSpace::Srgb), ("linear", ColorSpace::Linear)])?;
+        let mut texture = self.load(table, "file", file, space.unwrap_or_default())?;
+        if let Some(bilinear) = table.choice("filter", &[("bilinear", true), ("nearest", false)])? {
+            texture.bilinear = bilinear;
+        }
+        if let Some([wrap_u, wrap_v]) = read_wrap(table)? {
+            (texture.wrap_u, texture.wrap_v) = (wrap_u, wrap_v);
+        }
+        let any = Range::new(-1.0e6, 1.0e6);
+        if let Some(scale) = table.number_or_numbers::<2>("scale", any)? {
+            texture.scale = scale.map(|number| number as f32);
+        }
+        if let Some(offset) = table.number_or_numbers::<2>("offset", any)? {
+            texture.offset = offset.map(|number| number as f32);
+        }
+        Ok(texture)
     }
-    if let Some([wrap_u, wrap_v]) = read_wrap(table)? {
-        (texture.wrap_u, texture.wrap_v) = (wrap_u, wrap_v);
+
+    fn load(&mut self, table: &Reader, key: &str, file: &str, space: ColorSpace) -> Result<Texture> {
+        self.files.load(&beside(table.document, file), space).map_err(|error| refer(table, key, error))
     }
-    let any = Range::new(-1.0e6, 1.0e6);
-    if let Some(scale) = table.number_or_numbers::<2>("scale", any)? {
-        texture.scale = scale.map(|number| number as f32);
-    }
-    if let Some(offset) = table.number_or_numbers::<2>("offset", any)? {
-        texture.offset = offset.map(|number| number as f32);
-    }
-    Ok(texture)
 }
 
 fn read_wrap(table: &Reader) -> Result<Option<[Wrap; 2]>> {
@@ -68,10 +69,6 @@ fn read_wrap(table: &Reader) -> Result<Option<[Wrap; 2]>> {
         value => wrap(value).map(|both| (both, both)),
     };
     both.map(|(u, v)| Some([u, v])).ok_or_else(|| table.mismatch("wrap", node))
-}
-
-fn load(table: &Reader, key: &str, file: &str, space: ColorSpace) -> Result<Texture> {
-    load_texture(&beside(table.document, file), space).map_err(|error| refer(table, key, error))
 }
 
 /// A path written in the document: relative to its folder.

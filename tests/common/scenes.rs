@@ -1,0 +1,99 @@
+//! Scenes for tests: those of the project, and third-party ones where they are at hand.
+#![allow(dead_code, reason = "each test binary uses its own part")]
+
+use gonio::bake::{SceneData, bake};
+use gonio::film::{Film, FilmSpec, Rect};
+use gonio::render::cpu::CpuRenderer;
+use gonio::render::{Job, Renderer, Watch};
+use gonio::scene::{Scene, load};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+/// What to render of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Take {
+    pub width: u32,
+    pub height: u32,
+    pub samples: u32,
+    pub seed: u32,
+}
+
+/// Every `.toml` below `scenes/`, sorted.
+pub fn all() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let mut found = Vec::new();
+    for folder in [root.clone(), root.join("lecture")] {
+        let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+        found.extend(entries.map(|entry| entry.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "toml")));
+    }
+    found.sort();
+    assert!(found.len() >= 11, "only {} scenes found", found.len());
+    found
+}
+
+/// A third-party file, or None with a line that says so.
+pub fn asset(path: &str) -> Option<PathBuf> {
+    let root = std::env::var_os("GONIO_ASSETS").map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/assets"), PathBuf::from);
+    let file = root.join(path);
+    if !file.exists() {
+        println!("SKIPPED: no third-party scene {path}");
+        return None;
+    }
+    Some(file)
+}
+
+/// Loads and bakes.
+pub fn prepare(path: &Path, take: Take) -> (Scene, SceneData) {
+    let mut scene = load::load(path, &[]).unwrap_or_else(|error| panic!("{error}"));
+    (scene.film.width, scene.film.height) = (take.width, take.height);
+    scene.settings.samples = take.samples;
+    scene.settings.seed = take.seed;
+    let data = bake(&scene).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    (scene, data)
+}
+
+/// An empty film for the whole frame.
+pub fn film(scene: &Scene, data: &SceneData) -> Film {
+    Film::new(FilmSpec {
+        width: scene.film.width,
+        height: scene.film.height,
+        crop: Rect::whole(scene.film.width, scene.film.height),
+        unit_exponent: scene.film.unit_exponent,
+        seed: scene.settings.seed,
+        scene_digest: data.digest(),
+        scene_name: scene.name.clone(),
+        integrator: "test".to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        transparent: data.header.hide_background != 0,
+        aovs: data.header.aovs != 0,
+        tonemap: scene.film.tonemap,
+        exposure: scene.film.exposure,
+    })
+}
+
+/// Renders a range of samples of the whole frame.
+pub fn render(renderer: &mut dyn Renderer, scene: &Scene, data: &SceneData, samples: Range<u32>) -> Film {
+    let mut film = film(scene, data);
+    let abort = AtomicBool::new(false);
+    let watch = Watch { abort: &abort, advance: &|_| {} };
+    let crop = film.crop();
+    renderer.accumulate(&Job { crop, samples }, &mut film, &watch).unwrap();
+    film
+}
+
+/// All samples on the CPU backend.
+pub fn render_cpu(scene: &Scene, data: &SceneData) -> Film {
+    render(&mut CpuRenderer::new(data, None).unwrap(), scene, data, 0..scene.settings.samples)
+}
+
+/// Panics with the number of differing pixels and the first of them.
+pub fn assert_same(reference: &Film, other: &Film, what: &str) {
+    let differ = reference.sums().iter().zip(other.sums()).filter(|(a, b)| a != b).count();
+    if differ > 0 {
+        let first = reference.sums().iter().zip(other.sums()).position(|(a, b)| a != b).unwrap();
+        let (a, b) = (reference.sums()[first], other.sums()[first]);
+        panic!("{what}: {differ} of {} pixels differ, first number {first}: {a:?} and {b:?}", reference.sums().len());
+    }
+    assert_eq!(reference.hash(), other.hash(), "{what}: same sums, but other counts");
+}
