@@ -41,7 +41,7 @@ void push_shadow(ShadowRay shadow) {
 // Adds `value` (radiance and alpha, throughput included) to the sample in `slot`.
 void add_contribution(float scale, uint slot, vec4 value, uint dither) {
     for (uint lane = 0u; lane < 4u; lane++) {
-        Fixed units = to_fixed(value[lane], scale, dither_lane(dither, lane));
+        Fixed units = to_fixed(value[lane], lane_scale(scale, lane), dither_lane(dither, lane));
         if ((units.low | units.high) != 0u) ATOMIC_ADD_FIXED(slots[slot], lane, units)
         if (units.nan != 0u) atomicAdd(control.nan_count, 1u);
     }

@@ -108,9 +108,9 @@ float jittered(uint cell, uint count, uint random) {
     uint rest = 16777216u - width * count;
     uint low = cell * width + (cell * rest + count - 1u) / count;
     uint high = (cell + 1u) * width + ((cell + 1u) * rest + count - 1u) / count;
-    uint size = high - low;
-    uint offset = uint(unit_float(random) * float(size));
-    return float(low + (offset < size ? offset : size - 1u)) * 5.9604644775390625e-8;
+    // A fraction below 1 times the size is rounded to less than the size, always.
+    uint offset = uint(unit_float(random) * float(high - low));
+    return float(low + offset) * 5.9604644775390625e-8;
 }
 
 // Strata per axis in use.

@@ -4,7 +4,7 @@
 
 #include "shading/sampling.glsl"
 
-// Scale of the normal and albedo sums, 2^22.
+// Scale of the sums that have no unit: alpha, normal, albedo; 2^22.
 const float AOV_SCALE = 4194304.0;
 // One contribution is clamped to +-2^39 fixed-point units, twice what a sample may hold.
 const float FIXED_LIMIT = 549755813888.0;
@@ -23,6 +23,11 @@ struct Fixed {
 // Dither of one lane in 0..1, from a contribution's hash.
 float dither_lane(uint dither, uint lane) {
     return unit_float(hash_u32(dither + lane * 0x9e3779b9u));
+}
+
+// Scale of a lane of the film: `scale` for light, 2^22 for alpha, which has no unit.
+float lane_scale(float scale, uint lane) {
+    return lane == 3u ? AOV_SCALE : scale;
 }
 
 // floor(value * scale + u) as a 64-bit integer. `scale` is a power of two, u in 0..1 dithers, so that light dimmer

@@ -98,15 +98,14 @@ pub struct SceneFlags {
 impl SceneFlags {
     /// Loads a scene (`-` is TOML on standard input) and applies the flags. Prints the loader's warnings.
     pub fn load(&self, path: &Path) -> anyhow::Result<Scene> {
+        let size = self.size.map(|size| format!("film.size=[{},{}]", size.width, size.height));
         let overrides = self
             .set
             .iter()
+            .chain(&size)
             .map(|text| text.parse().map_err(|error| Usage(format!("--set {text}: {error}"))))
             .collect::<Result<Vec<load::Override>, _>>()?;
         let mut scene = load::load(path, &overrides)?;
-        if let Some(size) = self.size {
-            (scene.film.width, scene.film.height) = (size.width, size.height);
-        }
         let settings = &mut scene.settings;
         settings.samples = self.spp.unwrap_or(settings.samples);
         settings.seed = self.seed.unwrap_or(settings.seed);

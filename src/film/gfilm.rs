@@ -8,7 +8,7 @@
 //! | 4 | format version, 1 |
 //! | 4 | length H of the header, at most 1 MiB |
 //! | H | header: JSON, UTF-8, the fields of `Header` |
-//! | 32 n | for each of the n pixels of the crop, rows from the top: sums of r, g, b, alpha (i64), steps of 2^(e - 22) |
+//! | 32 n | for each of the n pixels of the crop, rows from the top: sums of r, g, b (i64, steps of 2^(e - 22)) and alpha (i64, steps of 2^-22) |
 //! | 60 n | if `aovs`: for each pixel sums of normal x, y, z and albedo r, g, b (i64, steps of 2^-22), depth (f32), object, material (u32) |
 //! | 32 | BLAKE3 of everything before |
 //!

@@ -35,16 +35,14 @@ fn mean(sum: i64, exponent: i32, n: u64) -> f32 {
 }
 
 impl Film {
-    /// The picture: each sum times 2^-(22 - e), divided by the number of samples in f64, rounded to f32.
+    /// The picture: each sum times 2^-(22 - e), alpha times 2^-22, divided by the number of samples in f64, rounded to f32.
     /// Black and empty for a film without samples.
     pub fn resolve(&self) -> Image {
-        let exponent = self.spec.unit_exponent - FRACTION_BITS;
+        let light = self.spec.unit_exponent - FRACTION_BITS;
+        let exponents = [light, light, light, -FRACTION_BITS];
         let n = self.samples.total();
-        let pixels = self
-            .sums
-            .iter()
-            .map(|sums| sums.map(|sum| mean(sum, exponent, n)))
-            .collect();
+        let resolve = |sums: &[i64; 4]| std::array::from_fn(|lane| mean(sums[lane], exponents[lane], n));
+        let pixels = self.sums.iter().map(resolve).collect();
         Image {
             width: self.spec.crop.width,
             height: self.spec.crop.height,

@@ -81,7 +81,7 @@ impl Default for AovSums {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     pub(super) spec: FilmSpec,
-    /// r, g, b, alpha in steps of 2^(e - 22), rows of the crop from the top.
+    /// r, g, b in steps of 2^(e - 22) and alpha in steps of 2^-22, rows of the crop from the top.
     pub(super) sums: Vec<[i64; 4]>,
     /// As `sums`, if kept.
     pub(super) aovs: Option<Vec<AovSums>>,
@@ -155,7 +155,7 @@ impl Film {
         self.spec.crop
     }
 
-    /// r, g, b, alpha of each pixel in steps of 2^(e - 22), rows of the crop from the top.
+    /// r, g, b of each pixel in steps of 2^(e - 22) and alpha in steps of 2^-22, rows of the crop from the top.
     pub fn sums(&self) -> &[[i64; 4]] {
         &self.sums
     }

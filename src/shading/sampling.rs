@@ -121,9 +121,9 @@ fn jittered(cell: u32, count: u32, random: u32) -> f32 {
     let rest = 16777216 - width * count;
     let low = cell * width + (cell * rest + count - 1) / count; // integer
     let high = (cell + 1) * width + ((cell + 1) * rest + count - 1) / count; // integer
-    let size = high - low;
-    let offset = (unit_float(random) * size as f32) as u32;
-    (low + if offset < size { offset } else { size - 1 }) as f32 * 5.9604644775390625e-8
+    // A fraction below 1 times the size is rounded to less than the size, always.
+    let offset = (unit_float(random) * (high - low) as f32) as u32;
+    (low + offset) as f32 * 5.9604644775390625e-8
 }
 
 /// Strata per axis in use.

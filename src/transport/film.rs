@@ -3,7 +3,7 @@
 use crate::layout::FilmSum;
 use crate::shading::sampling::{hash_u32, unit_float};
 
-/// Scale of the normal and albedo sums, 2^22.
+/// Scale of the sums that have no unit: alpha, normal, albedo; 2^22.
 pub const AOV_SCALE: f32 = 4194304.0;
 /// One contribution is clamped to +-2^39 fixed-point units, twice what a sample may hold.
 const FIXED_LIMIT: f32 = 549755813888.0;
@@ -23,6 +23,11 @@ pub struct Fixed {
 /// Dither of one lane in 0..1, from a contribution's hash.
 pub fn dither_lane(dither: u32, lane: u32) -> f32 {
     unit_float(hash_u32(dither.wrapping_add(lane.wrapping_mul(0x9e37_79b9))))
+}
+
+/// Scale of a lane of the film: `scale` for light, 2^22 for alpha, which has no unit.
+pub fn lane_scale(scale: f32, lane: u32) -> f32 {
+    if lane == 3 { AOV_SCALE } else { scale }
 }
 
 /// floor(value * scale + u) as a 64-bit integer. `scale` is a power of two, u in 0..1 dithers, so that light dimmer

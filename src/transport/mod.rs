@@ -53,7 +53,8 @@ pub fn add_contribution(queues: &mut Queues, scale: f32, slot: u32, value: Vec4,
     let _ = slot; // one sample at a time here; the device keeps a sum per slot
     let values = value.to_array();
     for lane in 0..4 {
-        let fixed = film::to_fixed(values[lane as usize], scale, film::dither_lane(dither, lane));
+        let lane_scale = film::lane_scale(scale, lane);
+        let fixed = film::to_fixed(values[lane as usize], lane_scale, film::dither_lane(dither, lane));
         film::add_fixed(&mut queues.sum, lane, fixed);
         queues.nan_count += u64::from(fixed.nan);
     }
