@@ -343,7 +343,7 @@ fn every_embedded_kernel_is_strict_decorated_and_stripped() {
             assert_eq!(strict::check(&module), [], "{name}");
             assert_eq!(strict::no_contraction(&module), float_results(&module), "{name}");
             assert!(!module.all_inst_iter().any(|i| i.class.opcode == Op::Line), "{name}");
-            assert_eq!(module.header.expect("a header").version(), (1, 5), "{name}");
+            assert_eq!(module.header.as_ref().expect("a header").version(), (1, 5), "{name}");
             kernels += 1;
             decorated += float_results(&module).len();
         }

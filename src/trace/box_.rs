@@ -103,6 +103,7 @@ fn approx_hit_bits(meta: u32, octant: u32, near: Vec4, far: Vec4) -> u32 {
 /// Source: Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
 /// section 3; the widening is ours (the bound above).
 #[inline(always)]
+#[allow(clippy::disallowed_methods, reason = "it chooses what to visit, never what is hit")]
 pub fn approx_intersect_node(node: &Node, ray: &LevelRay, margin: f32, t_max: f32) -> u32 {
     let exponents = node.exponents_imask;
     let step = Vec3::new(
