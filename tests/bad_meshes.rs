@@ -5,8 +5,7 @@ use gonio::scene::load::{gltf, ply};
 use std::path::{Path, PathBuf};
 
 fn asset(name: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("GONIO_ASSETS")
-        .map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
+    let root = std::env::var_os("GONIO_ASSETS").map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
     let path = root.join(name);
     if path.exists() {
         return Some(path);
@@ -21,10 +20,7 @@ fn files_with(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
         let path = entry.path();
         if path.is_dir() {
             found.extend(files_with(&path, extensions));
-        } else if path
-            .extension()
-            .is_some_and(|e| extensions.iter().any(|x| e == *x))
-        {
+        } else if path.extension().is_some_and(|e| extensions.iter().any(|x| e == *x)) {
             found.push(path);
         }
     }
@@ -40,10 +36,7 @@ fn every_broken_ply_of_the_assets_is_refused_with_its_name() {
     assert!(files.len() >= 6);
     for file in files {
         let message = ply::load(&file).expect_err("a broken file").to_string();
-        assert!(
-            message.starts_with(&file.display().to_string()),
-            "{message}"
-        );
+        assert!(message.starts_with(&file.display().to_string()), "{message}");
         println!("{message}");
     }
 }
@@ -56,13 +49,8 @@ fn every_broken_gltf_of_the_assets_is_refused_with_its_name() {
     let files = files_with(&folder, &["gltf", "glb"]);
     assert!(files.len() >= 12);
     for file in files {
-        let message = gltf::load(&file)
-            .expect_err(&file.display().to_string())
-            .to_string();
-        assert!(
-            message.starts_with(&folder.display().to_string()),
-            "{message}"
-        );
+        let message = gltf::load(&file).expect_err(&file.display().to_string()).to_string();
+        assert!(message.starts_with(&folder.display().to_string()), "{message}");
         println!("{message}");
     }
 }
@@ -79,85 +67,25 @@ fn broken_text_ply_is_refused_with_its_line() {
         (String::new(), 1, "no end_header"),
         ("plx\n".into(), 1, "first line is not `ply`"),
         ("ply\nformat ascii 1.0\n".into(), 3, "no end_header"),
+        ("ply\nelement vertex 3\nend_header\n".into(), 3, "no format line"),
+        ("ply\nformat text 1.0\nend_header\n".into(), 2, "unknown format `text`"),
+        ("ply\nformat ascii 2.0\nend_header\n".into(), 2, "version 2.0"),
+        (ascii("element vertex -3\nend_header\n"), 3, "`-3` is not a count"),
+        (ascii("element vertex 99999999999999999999\nend_header\n"), 3, "is not a count"),
+        (ascii("property float x\nend_header\n"), 3, "before the first element"),
+        (ascii("element vertex 3\nproperty real x\nend_header\n"), 4, "unknown type `real`"),
+        (ascii("element face 1\nproperty list float int vertex_indices\nend_header\n"), 4, "integer type"),
+        (ascii("element face 1\nproperty list uchar int\nend_header\n"), 4, "a property is"),
+        (ascii("elephant vertex 3\nend_header\n"), 3, "unknown header line"),
+        (ascii("element vertex 3\nproperty float x\nproperty float y\nend_header\n1 2\n1 2\n1 2\n"), 6, "x, y, z"),
         (
-            "ply\nelement vertex 3\nend_header\n".into(),
-            3,
-            "no format line",
-        ),
-        (
-            "ply\nformat text 1.0\nend_header\n".into(),
-            2,
-            "unknown format `text`",
-        ),
-        (
-            "ply\nformat ascii 2.0\nend_header\n".into(),
-            2,
-            "version 2.0",
-        ),
-        (
-            ascii("element vertex -3\nend_header\n"),
-            3,
-            "`-3` is not a count",
-        ),
-        (
-            ascii("element vertex 99999999999999999999\nend_header\n"),
-            3,
-            "is not a count",
-        ),
-        (
-            ascii("property float x\nend_header\n"),
-            3,
-            "before the first element",
-        ),
-        (
-            ascii("element vertex 3\nproperty real x\nend_header\n"),
-            4,
-            "unknown type `real`",
-        ),
-        (
-            ascii("element face 1\nproperty list float int vertex_indices\nend_header\n"),
-            4,
-            "integer type",
-        ),
-        (
-            ascii("element face 1\nproperty list uchar int\nend_header\n"),
-            4,
-            "a property is",
-        ),
-        (
-            ascii("elephant vertex 3\nend_header\n"),
-            3,
-            "unknown header line",
-        ),
-        (
-            ascii(
-                "element vertex 3\nproperty float x\nproperty float y\nend_header\n1 2\n1 2\n1 2\n",
-            ),
-            6,
-            "x, y, z",
-        ),
-        (
-            ascii(&format!(
-                "{VERTEX}element face 1\nproperty int a\nend_header\n{POINTS}3\n"
-            )),
+            ascii(&format!("{VERTEX}element face 1\nproperty int a\nend_header\n{POINTS}3\n")),
             9,
             "no list vertex_indices",
         ),
-        (
-            ascii(&format!("{VERTEX}end_header\n{POINTS}")),
-            7,
-            "no faces",
-        ),
-        (
-            body(""),
-            12,
-            "1 items of at least 2 bytes, but only 0 bytes follow",
-        ),
-        (
-            body("3 0 1\n"),
-            13,
-            "the line ends before property `vertex_indices`",
-        ),
+        (ascii(&format!("{VERTEX}end_header\n{POINTS}")), 7, "no faces"),
+        (body(""), 12, "1 items of at least 2 bytes, but only 0 bytes follow"),
+        (body("3 0 1\n"), 13, "the line ends before property `vertex_indices`"),
         (body("3 0 1 2 4\n"), 13, "`4` follows the last property"),
         (body("3 0 1 3\n"), 13, "vertex 3 of 3"),
         (body("3 0 1 -1\n"), 13, "-1 is not the index"),
@@ -166,16 +94,8 @@ fn broken_text_ply_is_refused_with_its_line() {
         (body("2 0 1\n"), 13, "a face of 2 corners"),
         (body("-1 0 1\n"), 13, "has -1 items"),
         (body("4000000000 0 1\n"), 13, "the line ends"),
-        (
-            body("3 0 1 2\n").replace("1 0 0\n", "1 nan 0\n"),
-            11,
-            "not finite",
-        ),
-        (
-            body("3 0 1 2\n").replace("vertex 3", "vertex 4000000000"),
-            9,
-            "element vertex claims 4000000000 items",
-        ),
+        (body("3 0 1 2\n").replace("1 0 0\n", "1 nan 0\n"), 11, "not finite"),
+        (body("3 0 1 2\n").replace("vertex 3", "vertex 4000000000"), 9, "element vertex claims 4000000000 items"),
         (
             ascii(&format!(
                 "element face 1\nproperty list uchar int vertex_indices\n{VERTEX}end_header\n3 0 1 9\n{POINTS}"
@@ -185,15 +105,10 @@ fn broken_text_ply_is_refused_with_its_line() {
         ),
     ];
     for (text, line, expected) in cases {
-        let message = ply::mesh_from_bytes(text.as_bytes(), Path::new("bad.ply"))
-            .expect_err(&text)
-            .to_string();
+        let message = ply::mesh_from_bytes(text.as_bytes(), Path::new("bad.ply")).expect_err(&text).to_string();
         // The line within the body counts the header; see each case.
         assert!(message.contains(expected), "{message}\n{text}");
-        assert!(
-            message.starts_with(&format!("bad.ply:{line}: ")),
-            "{message}, expected line {line}\n{text}"
-        );
+        assert!(message.starts_with(&format!("bad.ply:{line}: ")), "{message}, expected line {line}\n{text}");
     }
 }
 
@@ -203,35 +118,18 @@ fn broken_binary_ply_is_refused_with_its_byte() {
     let file = |bytes: &[u8]| [header.as_bytes(), &[0u8; 36], bytes].concat();
     let start = header.len() + 36;
     let cases: Vec<(Vec<u8>, usize, &str)> = vec![
-        (
-            header.clone().into_bytes(),
-            header.len(),
-            "3 items of at least 12 bytes, but only 0 bytes follow",
-        ),
+        (header.clone().into_bytes(), header.len(), "3 items of at least 12 bytes, but only 0 bytes follow"),
         (file(&[]), start, "element face claims"),
         (file(&[3, 0, 0]), start, "runs over the end"),
         (file(&[255; 13]), start, "255 items runs over the end"),
-        (
-            file(&[3, 0, 0, 0, 0, 1, 0, 0, 0, 3, 0, 0, 0]),
-            start,
-            "vertex 3 of 3",
-        ),
-        (
-            file(&[3, 0, 0, 0, 0, 1, 0, 0, 0, 255, 255, 255, 255]),
-            start,
-            "-1 is not the index",
-        ),
+        (file(&[3, 0, 0, 0, 0, 1, 0, 0, 0, 3, 0, 0, 0]), start, "vertex 3 of 3"),
+        (file(&[3, 0, 0, 0, 0, 1, 0, 0, 0, 255, 255, 255, 255]), start, "-1 is not the index"),
         (file(&[0]), start, "a face of 0 corners"),
     ];
     for (bytes, at, expected) in cases {
-        let message = ply::mesh_from_bytes(&bytes, Path::new("bad.ply"))
-            .expect_err(expected)
-            .to_string();
+        let message = ply::mesh_from_bytes(&bytes, Path::new("bad.ply")).expect_err(expected).to_string();
         assert!(message.contains(expected), "{message}");
-        assert!(
-            message.starts_with(&format!("bad.ply: byte {at}: ")),
-            "{message}, expected byte {at}"
-        );
+        assert!(message.starts_with(&format!("bad.ply: byte {at}: ")), "{message}, expected byte {at}");
     }
 }
 
@@ -282,11 +180,7 @@ fn broken_gltf_is_refused_with_the_place_in_the_document() {
             r#""scene": 0, "materials": [{text}], "images": [{{"uri": "data:,x"}}], "textures": [{{"source": 0}}, {{"source": 7}}],"#
         )
     };
-    let texture = |text: &str| {
-        material(&format!(
-            r#"{{"pbrMetallicRoughness": {{"baseColorTexture": {text}}}}}"#
-        ))
-    };
+    let texture = |text: &str| material(&format!(r#"{{"pbrMetallicRoughness": {{"baseColorTexture": {text}}}}}"#));
     let indexed = r#""indices": 1"#;
     let cases: Vec<(&str, String, &str)> = vec![
         (r#""version": "2.0""#, r#""version": "1.0""#.into(), "bad.gltf: asset: version 1.0"),
@@ -345,34 +239,23 @@ fn broken_gltf_is_refused_with_the_place_in_the_document() {
             Ok(_) => panic!("accepted: {to}"),
             Err(error) => error.to_string(),
         };
-        assert!(
-            message.contains(expected) && message.starts_with("bad.gltf"),
-            "{message}, expected {expected}"
-        );
+        assert!(message.contains(expected) && message.starts_with("bad.gltf"), "{message}, expected {expected}");
     }
 }
 
 #[test]
 fn gltf_that_names_a_missing_file_names_it_in_the_error() {
     let text = TRIANGLE.replace("data:;base64,AAAA", "not%20there.bin?");
-    let message = gltf::scene_from_bytes(text.as_bytes(), Path::new("folder/bad.gltf"))
-        .expect_err("missing")
-        .to_string();
+    let message =
+        gltf::scene_from_bytes(text.as_bytes(), Path::new("folder/bad.gltf")).expect_err("missing").to_string();
     assert!(message.starts_with("folder/not there.bin?"), "{message}");
 }
 
 #[test]
 fn broken_glb_is_refused() {
-    let chunk =
-        |kind: &[u8; 4], data: &[u8]| [&(data.len() as u32).to_le_bytes()[..], kind, data].concat();
+    let chunk = |kind: &[u8; 4], data: &[u8]| [&(data.len() as u32).to_le_bytes()[..], kind, data].concat();
     let glb = |version: u32, length: u32, rest: &[u8]| {
-        [
-            &b"glTF"[..],
-            &version.to_le_bytes(),
-            &length.to_le_bytes(),
-            rest,
-        ]
-        .concat()
+        [&b"glTF"[..], &version.to_le_bytes(), &length.to_le_bytes(), rest].concat()
     };
     let json = chunk(b"JSON", br#"{"asset":{"version":"2.0"}}"#);
     let whole = 12 + json.len() as u32;
@@ -383,31 +266,17 @@ fn broken_glb_is_refused() {
         (glb(2, 0, &[]), "there is no JSON chunk"),
         (glb(2, 12, &[]), "there is no JSON chunk"),
         (glb(2, 16, &[0; 4]), "GLB chunk at byte 12: the file ends"),
-        (
-            glb(2, 20, &[255; 8]),
-            "GLB chunk at byte 12: claims 4294967295 bytes; 0 follow",
-        ),
-        (
-            glb(2, 12 + 9, &chunk(b"BIN\0", &[0])),
-            "there is no JSON chunk",
-        ),
+        (glb(2, 20, &[255; 8]), "GLB chunk at byte 12: claims 4294967295 bytes; 0 follow"),
+        (glb(2, 12 + 9, &chunk(b"BIN\0", &[0])), "there is no JSON chunk"),
         (glb(2, 12 + 9, &chunk(b"JSON", b"{")), "bad.glb:1:1"),
     ];
     for (bytes, expected) in cases {
-        let message = gltf::scene_from_bytes(&bytes, Path::new("bad.glb"))
-            .expect_err(expected)
-            .to_string();
+        let message = gltf::scene_from_bytes(&bytes, Path::new("bad.glb")).expect_err(expected).to_string();
         assert!(message.contains(expected), "{message}, expected {expected}");
     }
     // Nothing to draw is no error: the file may be a library of materials. It is said.
-    let scene =
-        gltf::scene_from_bytes(&glb(2, whole, &json), Path::new("empty.glb")).expect("valid");
-    assert!(
-        scene
-            .warnings
-            .iter()
-            .any(|w| w == "there is nothing to draw")
-    );
+    let scene = gltf::scene_from_bytes(&glb(2, whole, &json), Path::new("empty.glb")).expect("valid");
+    assert!(scene.warnings.iter().any(|w| w == "there is nothing to draw"));
 }
 
 #[test]
@@ -425,19 +294,11 @@ fn gltf_cut_off_or_changed_anywhere_never_panics() {
 
 #[test]
 fn deeply_nested_gltf_is_refused_and_a_long_chain_of_nodes_is_not() {
-    let nested = format!(
-        r#"{{"asset": {{"version": "2.0", "extras": {}1{}}}}}"#,
-        "[".repeat(100_000),
-        "]".repeat(100_000)
-    );
+    let nested =
+        format!(r#"{{"asset": {{"version": "2.0", "extras": {}1{}}}}}"#, "[".repeat(100_000), "]".repeat(100_000));
     assert!(gltf::scene_from_bytes(nested.as_bytes(), Path::new("deep.gltf")).is_err());
-    let chain: Vec<String> = (1..20_000)
-        .map(|i| format!(r#"{{"children": [{i}]}}"#))
-        .collect();
-    let text = TRIANGLE.replace(
-        r#"{"mesh": 0}"#,
-        &format!(r#"{}, {{"mesh": 0}}"#, chain.join(", ")),
-    );
+    let chain: Vec<String> = (1..20_000).map(|i| format!(r#"{{"children": [{i}]}}"#)).collect();
+    let text = TRIANGLE.replace(r#"{"mesh": 0}"#, &format!(r#"{}, {{"mesh": 0}}"#, chain.join(", ")));
     let scene = gltf::scene_from_bytes(text.as_bytes(), Path::new("long.gltf")).expect("valid");
     assert_eq!(scene.objects[0].name, "nodes[19999]");
 }
@@ -446,8 +307,7 @@ fn deeply_nested_gltf_is_refused_and_a_long_chain_of_nodes_is_not() {
 fn broken_pictures_are_refused_with_their_name() {
     let huge = |kind: &[u8]| {
         // A PNG header that claims 60,000 x 60,000 texels and ends.
-        let mut bytes =
-            b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\xea\x60\0\0\xea\x60\x08\x06\0\0\0".to_vec();
+        let mut bytes = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\xea\x60\0\0\xea\x60\x08\x06\0\0\0".to_vec();
         bytes.extend(kind);
         bytes
     };
@@ -459,20 +319,11 @@ fn broken_pictures_are_refused_with_their_name() {
         (b"\x76\x2f\x31\x01\x02\0\0\0".to_vec(), "cannot decode"),
     ];
     for (bytes, expected) in cases {
-        let message = texture_from_bytes(&bytes, Path::new("bad.png"), ColorSpace::Srgb)
-            .expect_err(expected)
-            .to_string();
-        assert!(
-            message.starts_with("bad.png: ") && message.contains(expected),
-            "{message}"
-        );
+        let message =
+            texture_from_bytes(&bytes, Path::new("bad.png"), ColorSpace::Srgb).expect_err(expected).to_string();
+        assert!(message.starts_with("bad.png: ") && message.contains(expected), "{message}");
     }
     let hdr = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n";
-    let message = texture_from_bytes(hdr, Path::new("bad.hdr"), ColorSpace::Srgb)
-        .expect_err("too large")
-        .to_string();
-    assert!(
-        message.contains("a picture of 60000 x 60000; allowed are"),
-        "{message}"
-    );
+    let message = texture_from_bytes(hdr, Path::new("bad.hdr"), ColorSpace::Srgb).expect_err("too large").to_string();
+    assert!(message.contains("a picture of 60000 x 60000; allowed are"), "{message}");
 }

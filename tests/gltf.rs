@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// A file or folder of the assets; None, with a line saying so, where they are not installed.
 fn asset(name: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("GONIO_ASSETS")
-        .map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
+    let root = std::env::var_os("GONIO_ASSETS").map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
     let path = root.join(name);
     if path.exists() {
         return Some(path);
@@ -22,27 +21,18 @@ fn check_scene(scene: &Scene) {
     for mesh in &scene.meshes {
         let n = mesh.positions.len();
         assert!(mesh.positions.iter().all(|p| p.is_finite()));
-        assert!(
-            mesh.triangles.iter().flatten().all(|i| (*i as usize) < n)
-                && !mesh.triangles.is_empty()
-        );
+        assert!(mesh.triangles.iter().flatten().all(|i| (*i as usize) < n) && !mesh.triangles.is_empty());
         assert!([0, n].contains(&mesh.normals.len()) && [0, n].contains(&mesh.uvs.len()));
         assert!([0, n].contains(&mesh.colors.len()));
         assert!(mesh.normals.iter().all(|v| (v.length() - 1.0).abs() < 1e-5));
     }
     for object in &scene.objects {
-        let Geometry::Mesh(id) = object.geometry else {
-            panic!("no spheres in files")
-        };
+        let Geometry::Mesh(id) = object.geometry else { panic!("no spheres in files") };
         assert!((id.0 as usize) < scene.meshes.len() && object.transform.determinant() != 0.0);
         assert!((object.material.expect("a material").0 as usize) < scene.materials.len());
     }
     for material in &scene.materials {
-        assert!(
-            material
-                .color_texture
-                .is_none_or(|t| (t.0 as usize) < scene.textures.len())
-        );
+        assert!(material.color_texture.is_none_or(|t| (t.0 as usize) < scene.textures.len()));
         assert!(material.color.is_finite() && material.emission.is_finite() && material.k_r >= 0.0);
         if let Model::CookTorrance { .. } = material.model {
             assert_eq!(material.k_d + material.k_s, 1.0);
@@ -53,10 +43,7 @@ fn check_scene(scene: &Scene) {
             TextureData::Srgb8(t) | TextureData::Linear8(t) => t.len(),
             TextureData::Float(t) => t.len(),
         };
-        assert_eq!(
-            texels as u64,
-            u64::from(texture.width) * u64::from(texture.height)
-        );
+        assert_eq!(texels as u64, u64::from(texture.width) * u64::from(texture.height));
     }
 }
 
@@ -83,12 +70,7 @@ fn every_gltf_of_the_assets_loads() {
             let scene = load(&file, &[]).unwrap_or_else(|e| panic!("{e}"));
             check_scene(&scene);
             assert!(scene.camera.eye != scene.camera.target && !scene.lights.is_empty(), "staged");
-            println!(
-                "{}: {} objects, {:?}",
-                scene.name,
-                scene.objects.len(),
-                scene.warnings
-            );
+            println!("{}: {} objects, {:?}", scene.name, scene.objects.len(), scene.warnings);
         }
     }
 }
@@ -99,64 +81,28 @@ fn known_gltf_files_have_what_their_names_say() {
     let load = |name: &str| load(&folder.join(name), &[]).unwrap_or_else(|e| panic!("{e}"));
     let triangles = |scene: &Scene| -> usize {
         let of = |g: Geometry| {
-            if let Geometry::Mesh(id) = g {
-                scene.meshes[id.0 as usize].triangles.len()
-            } else {
-                0
-            }
+            if let Geometry::Mesh(id) = g { scene.meshes[id.0 as usize].triangles.len() } else { 0 }
         };
-        scene
-            .objects
-            .iter()
-            .filter(|o| o.name != "ground")
-            .map(|o| of(o.geometry))
-            .sum()
+        scene.objects.iter().filter(|o| o.name != "ground").map(|o| of(o.geometry)).sum()
     };
     assert_eq!(triangles(&load("Duck.glb")), 4_212);
     assert_eq!(triangles(&load("Box.glb")), 12);
-    assert_eq!(
-        triangles(&load("24_gpu_instancing/24_gpu_instancing.gltf")),
-        7_656_770,
-        "1,899 teapots and a plane"
-    );
+    assert_eq!(triangles(&load("24_gpu_instancing/24_gpu_instancing.gltf")), 7_656_770, "1,899 teapots and a plane");
     let shared = load("02_shared_mesh/02_shared_mesh.gltf");
-    assert!(
-        shared.objects.len() > shared.meshes.len(),
-        "nodes that share a mesh are instances"
-    );
+    assert!(shared.objects.len() > shared.meshes.len(), "nodes that share a mesh are instances");
     let unlit = load("01_unlit/01_unlit.gltf");
     assert!(unlit.materials.iter().any(|m| m.model == Model::Emissive));
     let blend = load("01_alpha_blend/01_alpha_blend.gltf");
-    assert!(
-        blend
-            .materials
-            .iter()
-            .any(|m| matches!(m.transparency, Some(Transparency::Interpolated { .. })))
-    );
+    assert!(blend.materials.iter().any(|m| matches!(m.transparency, Some(Transparency::Interpolated { .. }))));
     let transmission = load("17_ior/17_ior.gltf");
-    assert!(
-        transmission
-            .materials
-            .iter()
-            .any(|m| m.transparency.is_some())
-    );
+    assert!(transmission.materials.iter().any(|m| m.transparency.is_some()));
     let wrapping = load("13_texture_wrapping/13_texture_wrapping.gltf");
-    let wraps: Vec<Wrap> = wrapping
-        .textures
-        .iter()
-        .flat_map(|t| [t.wrap_u, t.wrap_v])
-        .collect();
-    assert!(
-        wraps.contains(&Wrap::Clamp) || wraps.contains(&Wrap::Mirror),
-        "{wraps:?}"
-    );
+    let wraps: Vec<Wrap> = wrapping.textures.iter().flat_map(|t| [t.wrap_u, t.wrap_v]).collect();
+    assert!(wraps.contains(&Wrap::Clamp) || wraps.contains(&Wrap::Mirror), "{wraps:?}");
     let colored = load("22_vertex_color/22_vertex_color.gltf");
     assert!(colored.meshes.iter().any(|m| !m.colors.is_empty()));
     let pointer = load("24_animation_pointer/24_animation_pointer.gltf");
-    assert!(
-        pointer.lights.iter().all(|l| l.name != "key"),
-        "its own lights are kept"
-    );
+    assert!(pointer.lights.iter().all(|l| l.name != "key"), "its own lights are kept");
 }
 
 #[test]
@@ -166,8 +112,7 @@ fn default_morph_weights_move_vertices() {
     };
     let scene = gltf::load(&file).expect("a valid file");
     let text = std::fs::read_to_string(&file).expect("text");
-    let still =
-        gltf::scene_from_bytes(text.replace("0.5", "0.0").as_bytes(), &file).expect("a valid file");
+    let still = gltf::scene_from_bytes(text.replace("0.5", "0.0").as_bytes(), &file).expect("a valid file");
     assert_ne!(scene.meshes[0].positions, still.meshes[0].positions);
 }
 
@@ -198,18 +143,20 @@ fn triangle_gltf(change: impl Fn(String) -> String) -> Result<Scene, SceneError>
 
 #[test]
 fn inline_gltf_triangle_is_placed_by_its_node() {
-    let scene = triangle_gltf(|t| t.replace(r#"{"mesh": 0}"#, r#"{"mesh": 0, "translation": [1, 2, 3], "scale": [2, 2, 2], "rotation": [0, 0, 0.70710678, 0.70710678]}"#)).expect("valid");
+    let scene = triangle_gltf(|t| {
+        t.replace(
+            r#"{"mesh": 0}"#,
+            r#"{"mesh": 0, "translation": [1, 2, 3], "scale": [2, 2, 2], "rotation": [0, 0, 0.70710678, 0.70710678]}"#,
+        )
+    })
+    .expect("valid");
     check_scene(&scene);
     assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]]);
     let moved = scene.objects[0].transform.0.transform_point3(DVec3::X);
-    assert!(
-        (moved - DVec3::new(1.0, 4.0, 3.0)).length() < 1e-6,
-        "{moved}"
-    );
+    assert!((moved - DVec3::new(1.0, 4.0, 3.0)).length() < 1e-6, "{moved}");
     // The same as a matrix, columns first.
     let matrix = scene.objects[0].transform.0.matrix3.to_cols_array();
-    let [a, b, c] =
-        [0, 3, 6].map(|i| format!("{}, {}, {}, 0", matrix[i], matrix[i + 1], matrix[i + 2]));
+    let [a, b, c] = [0, 3, 6].map(|i| format!("{}, {}, {}, 0", matrix[i], matrix[i + 1], matrix[i + 2]));
     let node = format!(r#"{{"mesh": 0, "matrix": [{a}, {b}, {c}, 1, 2, 3, 1]}}"#);
     let same = triangle_gltf(|t| t.replace(r#"{"mesh": 0}"#, &node)).expect("valid");
     assert!((same.objects[0].transform.0.transform_point3(DVec3::X) - moved).length() < 1e-6);
@@ -217,61 +164,32 @@ fn inline_gltf_triangle_is_placed_by_its_node() {
 
 #[test]
 fn gltf_strips_fans_and_missing_indices_make_triangles() {
-    let mode =
-        |mode: u32| move |t: String| t.replace(r#""indices": 1"#, &format!(r#""mode": {mode}"#));
-    assert_eq!(
-        triangle_gltf(mode(5)).expect("valid").meshes[0].triangles,
-        [[0, 1, 2]]
-    );
-    assert_eq!(
-        triangle_gltf(mode(6)).expect("valid").meshes[0].triangles,
-        [[1, 2, 0]]
-    );
-    assert_eq!(
-        triangle_gltf(mode(4)).expect("valid").meshes[0].triangles,
-        [[0, 1, 2]]
-    );
+    let mode = |mode: u32| move |t: String| t.replace(r#""indices": 1"#, &format!(r#""mode": {mode}"#));
+    assert_eq!(triangle_gltf(mode(5)).expect("valid").meshes[0].triangles, [[0, 1, 2]]);
+    assert_eq!(triangle_gltf(mode(6)).expect("valid").meshes[0].triangles, [[1, 2, 0]]);
+    assert_eq!(triangle_gltf(mode(4)).expect("valid").meshes[0].triangles, [[0, 1, 2]]);
     let points = triangle_gltf(mode(0)).expect("valid");
-    assert!(
-        points
-            .warnings
-            .iter()
-            .any(|w| w.contains("points and lines")),
-        "{:?}",
-        points.warnings
-    );
+    assert!(points.warnings.iter().any(|w| w.contains("points and lines")), "{:?}", points.warnings);
 }
 
 #[test]
 fn gltf_sparse_accessor_replaces_zeros() {
-    let scene =
-        triangle_gltf(|t| t.replace(r#""POSITION": 0}, "indices": 1"#, r#""POSITION": 3}"#))
-            .expect("valid");
+    let scene = triangle_gltf(|t| t.replace(r#""POSITION": 0}, "indices": 1"#, r#""POSITION": 3}"#)).expect("valid");
     // Index 2 of view 1 is vertex 2; its value is the second position.
     assert_eq!(scene.meshes[0].positions, [Vec3::ZERO, Vec3::ZERO, Vec3::X]);
 }
 
 #[test]
 fn gltf_normalized_integers_are_scaled_and_v_points_up() {
-    let scene =
-        triangle_gltf(|t| t.replace(r#""POSITION": 0"#, r#""POSITION": 0, "TEXCOORD_0": 2"#))
-            .expect("valid");
+    let scene = triangle_gltf(|t| t.replace(r#""POSITION": 0"#, r#""POSITION": 0, "TEXCOORD_0": 2"#)).expect("valid");
     let uvs = &scene.meshes[0].uvs;
     assert_eq!(uvs[0], Vec2::new(0.0, 0.0));
     assert_eq!(uvs[1], Vec2::new(-1.0, 2.0), "-128 is -1 too");
-    assert!(
-        (uvs[2] - Vec2::new(64.0 / 127.0, 1.0)).length() < 1e-6,
-        "{}",
-        uvs[2]
-    );
+    assert!((uvs[2] - Vec2::new(64.0 / 127.0, 1.0)).length() < 1e-6, "{}", uvs[2]);
     let plain = triangle_gltf(|t| {
-        t.replace(r#""POSITION": 0"#, r#""POSITION": 0, "TEXCOORD_0": 2"#)
-            .replace(r#", "normalized": true"#, "")
+        t.replace(r#""POSITION": 0"#, r#""POSITION": 0, "TEXCOORD_0": 2"#).replace(r#", "normalized": true"#, "")
     });
-    assert_eq!(
-        plain.expect("valid").meshes[0].uvs[1],
-        Vec2::new(-128.0, 128.0)
-    );
+    assert_eq!(plain.expect("valid").meshes[0].uvs[1], Vec2::new(-128.0, 128.0));
 }
 
 #[test]
@@ -279,55 +197,30 @@ fn gltf_material_becomes_our_nearest_model() {
     let with = |material: &str| {
         let scene = triangle_gltf(|t| {
             let t = t.replace(r#""indices": 1"#, r#""indices": 1, "material": 0"#);
-            t.replace(
-                r#""scene": 0,"#,
-                &format!(r#""scene": 0, "materials": [{material}],"#),
-            )
+            t.replace(r#""scene": 0,"#, &format!(r#""scene": 0, "materials": [{material}],"#))
         });
         scene.expect("valid").materials[0].clone()
     };
-    let metal = with(
-        r#"{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "roughnessFactor": 0.5}}"#,
-    );
-    let Model::CookTorrance { lobes, fresnel, .. } = &metal.model else {
-        panic!("{metal:?}")
-    };
+    let metal = with(r#"{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "roughnessFactor": 0.5}}"#);
+    let Model::CookTorrance { lobes, fresnel, .. } = &metal.model else { panic!("{metal:?}") };
     assert_eq!(lobes[0].m, 0.25);
     assert!(matches!(fresnel, gonio::scene::Fresnel::Conductor { .. }));
     assert_eq!(metal.specular_color, Vec3::new(1.0, 0.5, 0.25));
-    let mirror = with(
-        r#"{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "roughnessFactor": 0}}"#,
-    );
-    assert_eq!(
-        (&mirror.model, mirror.color),
-        (&Model::Mirror, Vec3::new(1.0, 0.5, 0.25))
-    );
-    let plastic = with(
-        r#"{"pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.3, 0.4, 1], "metallicFactor": 0}}"#,
-    );
-    assert!(
-        (plastic.color * plastic.k_d - Vec3::new(0.2, 0.3, 0.4)).length() < 1e-6,
-        "the diffuse albedo is kept"
-    );
+    let mirror = with(r#"{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "roughnessFactor": 0}}"#);
+    assert_eq!((&mirror.model, mirror.color), (&Model::Mirror, Vec3::new(1.0, 0.5, 0.25)));
+    let plastic = with(r#"{"pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.3, 0.4, 1], "metallicFactor": 0}}"#);
+    assert!((plastic.color * plastic.k_d - Vec3::new(0.2, 0.3, 0.4)).length() < 1e-6, "the diffuse albedo is kept");
     let glass = with(
         r#"{"pbrMetallicRoughness": {"metallicFactor": 0}, "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1},
         "KHR_materials_ior": {"ior": 1.33}, "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [1, 0.5, 0.25]}}}"#,
     );
-    let Model::Dielectric { eta, absorption } = glass.model else {
-        panic!("{glass:?}")
-    };
+    let Model::Dielectric { eta, absorption } = glass.model else { panic!("{glass:?}") };
     assert_eq!(eta, 1.33);
-    assert!(
-        (absorption - Vec3::new(0.0, 0.5, 1.0) * std::f32::consts::LN_2).length() < 1e-5,
-        "{absorption}"
-    );
+    assert!((absorption - Vec3::new(0.0, 0.5, 1.0) * std::f32::consts::LN_2).length() < 1e-5, "{absorption}");
     let blend = with(
         r#"{"alphaMode": "BLEND", "pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [1, 1, 1, 0.25]}}"#,
     );
-    assert_eq!(
-        blend.transparency,
-        Some(Transparency::Interpolated { k_t: 0.75 })
-    );
+    assert_eq!(blend.transparency, Some(Transparency::Interpolated { k_t: 0.75 }));
     let glow = with(
         r#"{"emissiveFactor": [1, 0.5, 0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}}"#,
     );
@@ -349,28 +242,14 @@ fn gltf_lights_are_metered_and_cameras_kept() {
     assert_eq!(scene.objects.len(), 1, "no ground where there is a camera");
     // 54,351 cd / 683 over 9^2 m^2 is 0.98 W/m^2, a well lit scene: nothing is scaled.
     assert_eq!(scene.lights.len(), 1);
-    assert!(
-        (scene.lights[0].intensity.x - 79.577).abs() < 0.01,
-        "{}",
-        scene.lights[0].intensity
-    );
+    assert!((scene.lights[0].intensity.x - 79.577).abs() < 0.01, "{}", scene.lights[0].intensity);
     let dark = triangle_gltf(|t| {
         t.replace(r#"{"mesh": 0}"#, r#"{"mesh": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}"#)
             .replace(r#""scene": 0,"#, r#""scene": 0, "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 3}]}},"#)
     })
     .expect("valid");
-    assert!(
-        (dark.lights[0].intensity.x / std::f32::consts::PI - 0.8).abs() < 1e-3,
-        "{}",
-        dark.lights[0].intensity
-    );
-    assert!(
-        dark.warnings
-            .iter()
-            .any(|w| w.contains("lights are scaled")),
-        "{:?}",
-        dark.warnings
-    );
+    assert!((dark.lights[0].intensity.x / std::f32::consts::PI - 0.8).abs() < 1e-3, "{}", dark.lights[0].intensity);
+    assert!(dark.warnings.iter().any(|w| w.contains("lights are scaled")), "{:?}", dark.warnings);
 }
 
 #[test]
@@ -378,16 +257,10 @@ fn glb_chunks_are_read_and_unknown_ones_skipped() {
     let json = br#"{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 36}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
         "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]}  "#;
-    let positions: Vec<u8> = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
-        .iter()
-        .flat_map(|v| v.to_le_bytes())
-        .collect();
+    let positions: Vec<u8> =
+        [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
     let mut chunks = Vec::new();
-    for (kind, data) in [
-        (b"JSON", &json[..]),
-        (b"ODD!", &[1, 2, 3, 4][..]),
-        (b"BIN\0", &positions[..]),
-    ] {
+    for (kind, data) in [(b"JSON", &json[..]), (b"ODD!", &[1, 2, 3, 4][..]), (b"BIN\0", &positions[..])] {
         chunks.extend((data.len() as u32).to_le_bytes());
         chunks.extend(kind);
         chunks.extend(data);
@@ -405,9 +278,7 @@ fn gltf_texture_transform_is_baked_into_uvs_and_the_sampler_kept() {
     use base64::Engine;
     let mut png = std::io::Cursor::new(Vec::new());
     let picture = image::ImageBuffer::from_pixel(2, 3, image::Rgba([255u8, 0, 0, 255]));
-    image::DynamicImage::ImageRgba8(picture)
-        .write_to(&mut png, image::ImageFormat::Png)
-        .expect("a picture");
+    image::DynamicImage::ImageRgba8(picture).write_to(&mut png, image::ImageFormat::Png).expect("a picture");
     let uri = base64::engine::general_purpose::STANDARD.encode(png.get_ref());
     let head = format!(
         r#""scene": 0, "images": [{{"uri": "data:image/png;base64,{uri}"}}],
@@ -422,20 +293,10 @@ fn gltf_texture_transform_is_baked_into_uvs_and_the_sampler_kept() {
     })
     .expect("valid");
     let texture = &scene.textures[0];
-    assert_eq!(
-        (texture.width, texture.height, texture.bilinear),
-        (2, 3, false)
-    );
-    assert_eq!(
-        (texture.wrap_u, texture.wrap_v),
-        (Wrap::Clamp, Wrap::Mirror)
-    );
+    assert_eq!((texture.width, texture.height, texture.bilinear), (2, 3, false));
+    assert_eq!((texture.wrap_u, texture.wrap_v), (Wrap::Clamp, Wrap::Mirror));
     // A quarter turn takes (2 u, v) to (v, -2 u); then the offset, then v up.
-    let expected = [
-        Vec2::new(1.25, 1.0),
-        Vec2::new(-0.75, -1.0),
-        Vec2::new(0.25, 1.0 + 128.0 / 127.0),
-    ];
+    let expected = [Vec2::new(1.25, 1.0), Vec2::new(-0.75, -1.0), Vec2::new(0.25, 1.0 + 128.0 / 127.0)];
     for (uv, expected) in scene.meshes[0].uvs.iter().zip(expected) {
         assert!((*uv - expected).length() < 1e-5, "{uv} {expected}");
     }

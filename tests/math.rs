@@ -34,10 +34,7 @@ fn ulps(got: f32, want: f64) -> f64 {
 
 /// Every `step`-th float from `low` to `high`, both positive, both included.
 fn floats(low: f32, high: f32, step: usize) -> impl Iterator<Item = f32> {
-    (low.to_bits()..=high.to_bits())
-        .step_by(step)
-        .map(f32::from_bits)
-        .chain([high])
+    (low.to_bits()..=high.to_bits()).step_by(step).map(f32::from_bits).chain([high])
 }
 
 /// `count` + 1 values from `low` to `high`.
@@ -48,11 +45,7 @@ fn steps(low: f32, high: f32, count: u32) -> impl Iterator<Item = f32> {
 
 /// Asserts that no input has an error above `bound` or NaN.
 #[track_caller]
-fn assert_within<I: std::fmt::Debug>(
-    bound: f64,
-    inputs: impl Iterator<Item = I>,
-    error: impl Fn(&I) -> f64,
-) {
+fn assert_within<I: std::fmt::Debug>(bound: f64, inputs: impl Iterator<Item = I>, error: impl Fn(&I) -> f64) {
     let mut worst = (0.0, None);
     for input in inputs {
         let error = error(&input);
@@ -66,38 +59,24 @@ fn assert_within<I: std::fmt::Debug>(
     if std::env::var_os("GONIO_PRINT_ERRORS").is_some() {
         println!("line {line}: {error:.4e} of {bound:.4e} at {input:?}");
     }
-    assert!(
-        error <= bound,
-        "{error:.4e} exceeds {bound:.4e} at {input:?}"
-    );
+    assert!(error <= bound, "{error:.4e} exceeds {bound:.4e} at {input:?}");
 }
 
 #[test]
 fn reciprocals_are_within_their_bound() {
-    assert_within(0.51, floats(1.0, 2.0, 5), |x| {
-        ulps(rcp(*x), 1.0 / *x as f64)
-    });
-    assert_within(0.51, floats(TINY, HUGE, 1499), |x| {
-        ulps(rcp(-*x), -1.0 / *x as f64)
-    });
+    assert_within(0.51, floats(1.0, 2.0, 5), |x| ulps(rcp(*x), 1.0 / *x as f64));
+    assert_within(0.51, floats(TINY, HUGE, 1499), |x| ulps(rcp(-*x), -1.0 / *x as f64));
 }
 
 #[test]
 fn quotients_are_within_their_bound() {
-    let pairs = floats(1e-18, 1e18, 600_011)
-        .flat_map(|a| floats(1e-10, 1e10, 500_057).map(move |b| (a, -b)));
-    assert_within(0.51, pairs, |(a, b)| {
-        ulps(div(*a, -*b), *a as f64 / -*b as f64)
-    });
+    let pairs = floats(1e-18, 1e18, 600_011).flat_map(|a| floats(1e-10, 1e10, 500_057).map(move |b| (a, -b)));
+    assert_within(0.51, pairs, |(a, b)| ulps(div(*a, -*b), *a as f64 / -*b as f64));
     let large = floats(1e30, f32::MAX, 1009).map(|a| (a, 1e20));
-    assert_within(0.51, large, |(a, b)| {
-        ulps(div(*a, *b), *a as f64 / *b as f64)
-    });
+    assert_within(0.51, large, |(a, b)| ulps(div(*a, *b), *a as f64 / *b as f64));
     let small = floats(TINY, 1e-29, 1009).flat_map(|a| [(a, 0.7), (a, 1e-15), (a, TINY)]);
     let small = small.filter(|(a, b)| *a as f64 / *b as f64 > 8e-31);
-    assert_within(0.51, small, |(a, b)| {
-        ulps(div(*a, *b), *a as f64 / *b as f64)
-    });
+    assert_within(0.51, small, |(a, b)| ulps(div(*a, *b), *a as f64 / *b as f64));
 }
 
 #[test]
@@ -134,9 +113,7 @@ fn roots_are_within_their_bounds() {
     for (low, high, step) in [(1.0, 4.0, 7), (TINY, HUGE, 1499)] {
         let root = |x: &f32| libm::sqrt(*x as f64);
         assert_within(0.86, floats(low, high, step), |x| ulps(sqrt_(*x), root(x)));
-        assert_within(1.25, floats(low, high, step), |x| {
-            ulps(rsqrt(*x), 1.0 / root(x))
-        });
+        assert_within(1.25, floats(low, high, step), |x| ulps(rsqrt(*x), 1.0 / root(x)));
     }
     for i in 0..4096 {
         assert_eq!(sqrt_((i * i) as f32), i as f32);
@@ -147,11 +124,7 @@ fn roots_are_within_their_bounds() {
 fn roots_of_everything_else_are_zero() {
     for x in WILD {
         let outside = !(TINY..=HUGE).contains(&x);
-        assert_eq!(
-            (sqrt_(x) == 0.0, rsqrt(x) == 0.0),
-            (outside, outside),
-            "{x}"
-        );
+        assert_eq!((sqrt_(x) == 0.0, rsqrt(x) == 0.0), (outside, outside), "{x}");
         assert!(!sqrt_(x).is_nan() && !rsqrt(x).is_nan());
     }
 }
@@ -161,45 +134,28 @@ fn sines_are_within_their_bounds() {
     let radians = |x: f32| 2.0 * std::f64::consts::PI * (x as f64 - libm::floor(x as f64));
     for limit in [1.0, 1000.0, 4194304.0] {
         let inputs = || steps(-limit, limit, 500_000);
-        assert_within(2e-7, inputs(), |x| {
-            (sin_turns(*x) as f64 - libm::sin(radians(*x))).abs()
-        });
-        assert_within(2e-7, inputs(), |x| {
-            (cos_turns(*x) as f64 - libm::cos(radians(*x))).abs()
-        });
+        assert_within(2e-7, inputs(), |x| (sin_turns(*x) as f64 - libm::sin(radians(*x))).abs());
+        assert_within(2e-7, inputs(), |x| (cos_turns(*x) as f64 - libm::cos(radians(*x))).abs());
     }
     for limit in [7.0, 100.0, 8192.0] {
         let inputs = || steps(-limit, limit, 500_000);
-        assert_within(5e-7, inputs(), |x| {
-            (sin_(*x) as f64 - libm::sin(*x as f64)).abs()
-        });
-        assert_within(5e-7, inputs(), |x| {
-            (cos_(*x) as f64 - libm::cos(*x as f64)).abs()
-        });
+        assert_within(5e-7, inputs(), |x| (sin_(*x) as f64 - libm::sin(*x as f64)).abs());
+        assert_within(5e-7, inputs(), |x| (cos_(*x) as f64 - libm::cos(*x as f64)).abs());
     }
     // Small angles keep their relative precision.
-    assert_within(3.0, floats(1e-30, 0.25, 1999), |x| {
-        ulps(sin_turns(*x), libm::sin(radians(*x)))
-    });
+    assert_within(3.0, floats(1e-30, 0.25, 1999), |x| ulps(sin_turns(*x), libm::sin(radians(*x))));
 }
 
 #[test]
 fn sines_stay_in_range_and_hit_the_quarters() {
     for x in steps(-2.0, 2.0, 1_000_000) {
-        assert!(
-            sin_turns(x).abs() <= 1.0 && cos_turns(x).abs() <= 1.0,
-            "{x}"
-        );
+        assert!(sin_turns(x).abs() <= 1.0 && cos_turns(x).abs() <= 1.0, "{x}");
         assert!(sin_(x).abs() <= 1.0 && cos_(x).abs() <= 1.0, "{x}");
     }
     let quarters = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)];
     for i in -40..40 {
         let x = i as f32 * 0.25;
-        assert_eq!(
-            (sin_turns(x), cos_turns(x)),
-            quarters[(i & 3) as usize],
-            "{x} turns"
-        );
+        assert_eq!((sin_turns(x), cos_turns(x)), quarters[(i & 3) as usize], "{x} turns");
     }
     for x in WILD {
         // All of these are tiny or beyond the domain.
@@ -258,11 +214,7 @@ fn logarithms_of_everything_else_are_those_of_the_border() {
         if x > 3e38 {
             assert_eq!((log2_(x), log_(x)), (128.0, log_(f32::MAX)), "{x}");
         } else if x <= f32::MIN_POSITIVE {
-            assert_eq!(
-                (log2_(x), log_(x)),
-                (-126.0, log_(f32::MIN_POSITIVE)),
-                "{x}"
-            );
+            assert_eq!((log2_(x), log_(x)), (-126.0, log_(f32::MIN_POSITIVE)), "{x}");
         }
         assert!(log2_(x).abs() <= 128.0 && log_(x).abs() <= 89.0, "{x}");
     }
@@ -294,10 +246,7 @@ fn powers_at_the_edges_are_as_stated() {
     for y in [1e-3, 0.5, 1.0, 2.0, 1e3, 1e30, -3.0] {
         assert_eq!(pow_(1.0, y), 1.0);
     }
-    assert_eq!(
-        (pow_(2.0, 10.0), pow_(4.0, -0.5), pow_(0.5, 200.0)),
-        (1024.0, 0.5, 0.0)
-    );
+    assert_eq!((pow_(2.0, 10.0), pow_(4.0, -0.5), pow_(0.5, 200.0)), (1024.0, 0.5, 0.0));
 }
 
 #[test]
@@ -308,9 +257,7 @@ fn angles_of_vectors_are_within_their_bound() {
         let vectors = circle.map(|(y, x)| ((y * size) as f32, (x * size) as f32));
         // Below TINY the sign of y is lost, and with it the half plane.
         let vectors = vectors.filter(|(y, _)| y.abs() >= TINY);
-        assert_within(4e-7, vectors, |(y, x)| {
-            (atan2_(*y, *x) as f64 - libm::atan2(*y as f64, *x as f64)).abs()
-        });
+        assert_within(4e-7, vectors, |(y, x)| (atan2_(*y, *x) as f64 - libm::atan2(*y as f64, *x as f64)).abs());
     }
     assert_eq!((atan2_(0.0, 0.0), atan2_(0.0, 1.0)), (0.0, 0.0));
     assert_eq!((atan2_(1.0, 0.0), atan2_(-1.0, 0.0)), (HALF_PI, -HALF_PI));
@@ -334,23 +281,13 @@ fn angles_of_wild_vectors_are_angles() {
 #[test]
 fn arc_cosines_and_sines_are_within_their_bounds() {
     let inputs = || steps(-1.0, 1.0, 1_000_000);
-    assert_within(4e-7, inputs(), |x| {
-        (acos_(*x) as f64 - libm::acos(*x as f64)).abs()
-    });
-    assert_within(3e-7, inputs(), |x| {
-        (asin_(*x) as f64 - libm::asin(*x as f64)).abs()
-    });
+    assert_within(4e-7, inputs(), |x| (acos_(*x) as f64 - libm::acos(*x as f64)).abs());
+    assert_within(3e-7, inputs(), |x| (asin_(*x) as f64 - libm::asin(*x as f64)).abs());
     assert_eq!((acos_(1.0), acos_(-1.0), acos_(0.0)), (0.0, PI, HALF_PI));
     assert_eq!((acos_(1.5), acos_(f32::NEG_INFINITY)), (0.0, PI));
-    assert_eq!(
-        (asin_(2.0), asin_(-2.0), asin_(0.0)),
-        (HALF_PI, -HALF_PI, 0.0)
-    );
+    assert_eq!((asin_(2.0), asin_(-2.0), asin_(0.0)), (HALF_PI, -HALF_PI, 0.0));
     for x in WILD {
-        assert!(
-            (0.0..=PI).contains(&acos_(x)) && asin_(x).abs() <= HALF_PI,
-            "{x}"
-        );
+        assert!((0.0..=PI).contains(&acos_(x)) && asin_(x).abs() <= HALF_PI, "{x}");
     }
 }
 
@@ -361,10 +298,7 @@ fn exponents_and_scalings_are_exact() {
         assert_eq!((exponent_(power), exponent_(-1.75 * power)), (n, n));
         assert_eq!(ldexp_(1.0, n), power);
     }
-    assert_eq!(
-        (exponent_(0.0), exponent_(1e-40), exponent_(f32::NAN)),
-        (-127, -127, 128)
-    );
+    assert_eq!((exponent_(0.0), exponent_(1e-40), exponent_(f32::NAN)), (-127, -127, 128));
     assert_eq!((ldexp_(3.0, -1), ldexp_(1.0, 500)), (1.5, LARGEST_POWER));
     assert_eq!(ldexp_(1.0, -500), f32::MIN_POSITIVE);
 }
@@ -374,24 +308,14 @@ fn choices_treat_nan_as_stated() {
     assert_eq!((min_(1.0, 2.0), max_(1.0, 2.0)), (1.0, 2.0));
     assert_eq!((min_(f32::NAN, 2.0), max_(f32::NAN, 2.0)), (2.0, 2.0));
     assert_eq!((clamp_(-1.0, 0.0, 1.0), clamp_(0.5, 0.0, 1.0)), (0.0, 0.5));
-    assert_eq!(
-        (clamp_(9.0, 0.0, 1.0), clamp_(f32::NAN, 0.25, 1.0)),
-        (1.0, 0.25)
-    );
+    assert_eq!((clamp_(9.0, 0.0, 1.0), clamp_(f32::NAN, 0.25, 1.0)), (1.0, 0.25));
     let v = Vec3::new(-7.0, 3.0, 5.0);
-    assert_eq!(
-        (max3_(v), max3_(-v), min3_(v), min3_(-v)),
-        (5.0, 7.0, -7.0, -5.0)
-    );
+    assert_eq!((max3_(v), max3_(-v), min3_(v), min3_(-v)), (5.0, 7.0, -7.0, -5.0));
 }
 
 #[test]
 fn mixtures_reach_both_ends() {
-    let ends = (
-        mix_(3.0, 0.1, 0.0),
-        mix_(3.0, 0.1, 1.0),
-        mix_(2.0, 4.0, 0.5),
-    );
+    let ends = (mix_(3.0, 0.1, 0.0), mix_(3.0, 0.1, 1.0), mix_(2.0, 4.0, 0.5));
     assert_eq!(ends, (3.0, 0.1, 3.0));
     assert_eq!(mix3_(Vec3::X, Vec3::Y, 0.25), Vec3::new(0.75, 0.25, 0.0));
 }
@@ -399,19 +323,11 @@ fn mixtures_reach_both_ends() {
 #[test]
 fn lengths_and_directions_outside_their_domain_are_zero() {
     let inf = f32::INFINITY;
-    for v in [
-        Vec3::ZERO,
-        Vec3::splat(1e-31),
-        Vec3::new(1e31, 0.0, 1.0),
-        Vec3::splat(inf),
-    ] {
+    for v in [Vec3::ZERO, Vec3::splat(1e-31), Vec3::new(1e31, 0.0, 1.0), Vec3::splat(inf)] {
         assert_eq!((normalize3(v), length3(v)), (Vec3::ZERO, 0.0));
     }
     assert_eq!(normalize3(Vec3::new(TINY, 0.0, 0.0)), Vec3::X);
-    assert_eq!(
-        normalize3(Vec3::new(0.0, -HUGE, 1.0)),
-        Vec3::new(0.0, -1.0, TINY)
-    );
+    assert_eq!(normalize3(Vec3::new(0.0, -HUGE, 1.0)), Vec3::new(0.0, -1.0, TINY));
     assert_eq!(length3(Vec3::new(3.0, 4.0, 12.0)), 13.0);
 }
 

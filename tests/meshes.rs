@@ -4,15 +4,14 @@ use glam::{DVec3, Vec2, Vec3};
 use gonio::scene::load::image::{ColorSpace, load_texture, texture_from_bytes};
 use gonio::scene::load::{ply, staging};
 use gonio::scene::{
-    Background, Camera, Geometry, Light, LightKind, Mesh, MeshId, Object, Projection, Rgb, Scene,
-    TextureData, Transform, shape,
+    Background, Camera, Geometry, Light, LightKind, Mesh, MeshId, Object, Projection, Rgb, Scene, TextureData,
+    Transform, shape,
 };
 use std::path::{Path, PathBuf};
 
 /// A file or folder of the assets; None, with a line saying so, where they are not installed.
 fn asset(name: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("GONIO_ASSETS")
-        .map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
+    let root = std::env::var_os("GONIO_ASSETS").map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
     let path = root.join(name);
     if path.exists() {
         return Some(path);
@@ -52,21 +51,14 @@ fn binary_ply(format: &str, write: impl Fn(&mut Vec<u8>, &[u8])) -> Vec<u8> {
 
 #[test]
 fn ply_in_both_byte_orders_gives_the_same_mesh() {
-    let little = read_ply(&binary_ply("binary_little_endian", |out, bytes| {
-        out.extend(bytes)
-    }));
-    let big = read_ply(&binary_ply("binary_big_endian", |out, bytes| {
-        out.extend(bytes.iter().rev())
-    }));
+    let little = read_ply(&binary_ply("binary_little_endian", |out, bytes| out.extend(bytes)));
+    let big = read_ply(&binary_ply("binary_big_endian", |out, bytes| out.extend(bytes.iter().rev())));
     assert_eq!(little, big);
     assert_eq!(little.positions[2], Vec3::new(1.0, 1.0, -2.5));
     assert_eq!(little.triangles, [[0, 1, 2], [0, 2, 3]]);
     assert!(little.normals.is_empty() && little.uvs.is_empty());
     let color = little.colors[0];
-    assert!(
-        (color - Vec3::new(1.0, 0.0, 0.5029)).abs().max_element() < 1e-4,
-        "{color}"
-    );
+    assert!((color - Vec3::new(1.0, 0.0, 0.5029)).abs().max_element() < 1e-4, "{color}");
     assert_eq!(little.name, "test");
 }
 
@@ -78,11 +70,7 @@ fn ascii_ply_reads_normals_uvs_float_colors_and_skips_the_rest() {
         property list uchar int vertex_index\nend_header\n\
         0 0 0 0 0 2 0 0.25 0.5 0.5 0.5 0\n\n1 0 0 0 0 1 1 0 1 1 1 2 5 6\n0 1e0 0 0 0 0 0 1 0 0 0 1 7\n  3 0 1 2";
     let mesh = read_ply(text.as_bytes());
-    assert_eq!(
-        mesh.normals,
-        [Vec3::Z; 3],
-        "scaled to length 1; the zero normal becomes the face's"
-    );
+    assert_eq!(mesh.normals, [Vec3::Z; 3], "scaled to length 1; the zero normal becomes the face's");
     assert_eq!(mesh.uvs[0], Vec2::new(0.0, 0.25));
     assert_eq!(mesh.colors[0], Vec3::splat(0.5));
     assert_eq!(mesh.triangles, [[0, 1, 2]]);
@@ -100,10 +88,8 @@ fn concave_polygon_is_cut_into_triangles_that_cover_it() {
     };
     let areas: Vec<f32> = mesh.triangles.iter().map(area).collect();
     let shoelace = [[4.0, 1.0], [0.0, 2.0], [1.0, 1.0], [0.0, 0.0], [2.0, 0.9]];
-    let expected: f32 = (0..5)
-        .map(|i| (shoelace[i], shoelace[(i + 1) % 5]))
-        .map(|(a, b)| (a[0] * b[1] - a[1] * b[0]) * 0.5)
-        .sum();
+    let expected: f32 =
+        (0..5).map(|i| (shoelace[i], shoelace[(i + 1) % 5])).map(|(a, b)| (a[0] * b[1] - a[1] * b[0]) * 0.5).sum();
     assert_eq!(areas.len(), 3);
     assert!(areas.iter().all(|a| *a > 0.0), "{areas:?}");
     assert!((areas.iter().sum::<f32>() - expected).abs() < 1e-6);
@@ -114,10 +100,7 @@ fn ply_triangle_strips_alternate_and_restart() {
     let text = "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n\
         element tristrips 1\nproperty list int int vertex_indices\nend_header\n\
         0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n9 0 1 2 3 -1 2 3 4 5\n";
-    assert_eq!(
-        read_ply(text.as_bytes()).triangles,
-        [[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]]
-    );
+    assert_eq!(read_ply(text.as_bytes()).triangles, [[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]]);
 }
 
 #[test]
@@ -125,24 +108,12 @@ fn every_ply_of_the_assets_loads() {
     let Some(folder) = asset("meshes") else {
         return;
     };
-    let sizes = [
-        ("mitsuba_bunny.ply", 69_451),
-        ("mitsuba_teapot.ply", 2_256),
-        ("matpreview/02_shell.ply", 0),
-    ];
+    let sizes = [("mitsuba_bunny.ply", 69_451), ("mitsuba_teapot.ply", 2_256), ("matpreview/02_shell.ply", 0)];
     for (name, triangles) in sizes {
         let scene = ply::load(&folder.join(name)).expect(name);
         let mesh = &scene.meshes[0];
-        assert!(
-            triangles == 0 || mesh.triangles.len() == triangles,
-            "{name}: {}",
-            mesh.triangles.len()
-        );
-        assert_eq!(
-            mesh.normals.len(),
-            mesh.positions.len(),
-            "{name} is shaded smoothly"
-        );
+        assert!(triangles == 0 || mesh.triangles.len() == triangles, "{name}: {}", mesh.triangles.len());
+        assert_eq!(mesh.normals.len(), mesh.positions.len(), "{name} is shaded smoothly");
     }
 }
 
@@ -153,11 +124,7 @@ fn pictures_of_every_depth_and_format_become_textures() {
     };
     for entry in std::fs::read_dir(&folder).expect("a folder").flatten() {
         let path = entry.path();
-        let name = path
-            .file_name()
-            .expect("a name")
-            .to_string_lossy()
-            .into_owned();
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
         if path.extension().is_none_or(|e| e != "png") {
             continue;
         }
@@ -167,12 +134,8 @@ fn pictures_of_every_depth_and_format_become_textures() {
             assert!(message.contains(&name), "{message}");
         } else {
             let texture = result.unwrap_or_else(|e| panic!("{e}"));
-            let sixteen =
-                name.ends_with("16.png") && !name.starts_with("tbg") && !name.starts_with("tbb");
-            assert!(
-                !sixteen || matches!(texture.data, TextureData::Float(_)),
-                "{name}"
-            );
+            let sixteen = name.ends_with("16.png") && !name.starts_with("tbg") && !name.starts_with("tbb");
+            assert!(!sixteen || matches!(texture.data, TextureData::Float(_)), "{name}");
         }
     }
     let Some(hdr) = asset("hdr/chinese_garden_1k.hdr") else {
@@ -183,20 +146,10 @@ fn pictures_of_every_depth_and_format_become_textures() {
     let Some(exr) = asset("images/exr-testimages") else {
         return;
     };
-    for name in [
-        "BrightRingsNanInf.exr",
-        "AllHalfValues.exr",
-        "SquaresSwirls.exr",
-    ] {
-        let texture =
-            load_texture(&exr.join(name), ColorSpace::Srgb).unwrap_or_else(|e| panic!("{e}"));
-        let TextureData::Float(texels) = &texture.data else {
-            panic!("{name}")
-        };
-        assert!(
-            texels.as_flattened().iter().all(|v| v.is_finite()),
-            "{name}"
-        );
+    for name in ["BrightRingsNanInf.exr", "AllHalfValues.exr", "SquaresSwirls.exr"] {
+        let texture = load_texture(&exr.join(name), ColorSpace::Srgb).unwrap_or_else(|e| panic!("{e}"));
+        let TextureData::Float(texels) = &texture.data else { panic!("{name}") };
+        assert!(texels.as_flattened().iter().all(|v| v.is_finite()), "{name}");
     }
 }
 
@@ -204,22 +157,14 @@ fn pictures_of_every_depth_and_format_become_textures() {
 fn sixteen_bit_srgb_is_decoded_and_linear_data_is_not() {
     let mut bytes = std::io::Cursor::new(Vec::new());
     let picture = image::ImageBuffer::from_pixel(2, 1, image::Rgba([32_768u16, 65_535, 0, 32_768]));
-    image::DynamicImage::ImageRgba16(picture)
-        .write_to(&mut bytes, image::ImageFormat::Png)
-        .expect("a picture");
+    image::DynamicImage::ImageRgba16(picture).write_to(&mut bytes, image::ImageFormat::Png).expect("a picture");
     let texel = |space| {
-        let texture =
-            texture_from_bytes(bytes.get_ref(), Path::new("a.png"), space).expect("a picture");
-        let TextureData::Float(texels) = texture.data else {
-            panic!("16 bits are floats")
-        };
+        let texture = texture_from_bytes(bytes.get_ref(), Path::new("a.png"), space).expect("a picture");
+        let TextureData::Float(texels) = texture.data else { panic!("16 bits are floats") };
         texels[0]
     };
     let srgb = texel(ColorSpace::Srgb);
-    assert!(
-        (srgb[0] - 0.214_05).abs() < 1e-4 && srgb[1] == 1.0 && srgb[2] == 0.0,
-        "{srgb:?}"
-    );
+    assert!((srgb[0] - 0.214_05).abs() < 1e-4 && srgb[1] == 1.0 && srgb[2] == 0.0, "{srgb:?}");
     assert!((srgb[3] - 0.5).abs() < 1e-4, "alpha is linear");
     assert!((texel(ColorSpace::Linear)[0] - 0.5).abs() < 1e-4);
 }
@@ -242,15 +187,8 @@ fn staged(mesh: Mesh, transform: Transform) -> Scene {
 
 /// Where `p` is seen: right and up, -1 to 1 within the frame.
 fn on_film(scene: &Scene, p: DVec3) -> [f64; 2] {
-    let Camera {
-        eye,
-        target,
-        up,
-        projection,
-    } = scene.camera;
-    let Projection::Perspective { fov_y } = projection else {
-        panic!("perspective")
-    };
+    let Camera { eye, target, up, projection } = scene.camera;
+    let Projection::Perspective { fov_y } = projection else { panic!("perspective") };
     let forward = (target.as_dvec3() - eye.as_dvec3()).normalize();
     let right = forward.cross(up.as_dvec3()).normalize();
     let up = right.cross(forward);
@@ -263,17 +201,10 @@ fn on_film(scene: &Scene, p: DVec3) -> [f64; 2] {
 }
 
 fn largest_on_film(scene: &Scene) -> f64 {
-    let Geometry::Mesh(id) = scene.objects[0].geometry else {
-        panic!("a mesh")
-    };
+    let Geometry::Mesh(id) = scene.objects[0].geometry else { panic!("a mesh") };
     let points = scene.meshes[id.0 as usize].positions.iter();
     points
-        .flat_map(|p| {
-            on_film(
-                scene,
-                scene.objects[0].transform.0.transform_point3(p.as_dvec3()),
-            )
-        })
+        .flat_map(|p| on_film(scene, scene.objects[0].transform.0.transform_point3(p.as_dvec3())))
         .fold(0.0, |m, v| m.max(v.abs()))
 }
 
@@ -290,24 +221,11 @@ fn any_model_fills_the_frame_whatever_its_size_place_and_shape() {
             for mesh in meshes {
                 let name = mesh.name.clone();
                 let scale = Transform::scale(Vec3::splat(size));
-                let scene = staged(
-                    mesh,
-                    scale.then(Transform::translate(
-                        Vec3::new(offset, -offset, offset) * size,
-                    )),
-                );
+                let scene = staged(mesh, scale.then(Transform::translate(Vec3::new(offset, -offset, offset) * size)));
                 let reach = largest_on_film(&scene);
-                assert!(
-                    (0.5..0.95).contains(&reach),
-                    "{name} of size {size} at {offset}: {reach}"
-                );
+                assert!((0.5..0.95).contains(&reach), "{name} of size {size} at {offset}: {reach}");
                 assert!(scene.lights.len() == 2 && scene.ambient != Rgb::ZERO);
-                assert!(
-                    scene
-                        .lights
-                        .iter()
-                        .all(|l| matches!(l.kind, LightKind::Directional { .. }))
-                );
+                assert!(scene.lights.iter().all(|l| matches!(l.kind, LightKind::Directional { .. })));
             }
         }
     }
@@ -316,22 +234,10 @@ fn any_model_fills_the_frame_whatever_its_size_place_and_shape() {
 #[test]
 fn key_light_comes_from_above_behind_the_camera() {
     let scene = staged(shape::teapot(3), Transform::default());
-    let Light {
-        kind: LightKind::Directional { direction },
-        ..
-    } = scene.lights[0]
-    else {
-        panic!("directional")
-    };
+    let Light { kind: LightKind::Directional { direction }, .. } = scene.lights[0] else { panic!("directional") };
     let view = (scene.camera.target - scene.camera.eye).normalize();
-    assert!(
-        direction.y < -0.5 && direction.dot(view) > 0.3 && (direction.length() - 1.0).abs() < 1e-6,
-        "{direction}"
-    );
-    assert!(
-        scene.camera.eye.y > scene.camera.target.y,
-        "slightly from above"
-    );
+    assert!(direction.y < -0.5 && direction.dot(view) > 0.3 && (direction.length() - 1.0).abs() < 1e-6, "{direction}");
+    assert!(scene.camera.eye.y > scene.camera.target.y, "slightly from above");
 }
 
 #[test]
@@ -342,10 +248,7 @@ fn objects_get_a_ground_and_flat_things_and_rooms_do_not() {
     let mut room = shape::cuboid([4.0, 3.0, 6.0], 1);
     room.triangles.iter_mut().for_each(|t| t.swap(0, 1));
     assert!(!has_ground(room));
-    let scene = staged(
-        shape::teapot(3),
-        Transform::translate(Vec3::new(0.0, 5.0, 0.0)),
-    );
+    let scene = staged(shape::teapot(3), Transform::translate(Vec3::new(0.0, 5.0, 0.0)));
     let ground = scene.objects[1].transform.0.translation.y;
     assert!(ground < 5.0 && ground > 4.99, "{ground}");
 }
@@ -356,15 +259,9 @@ fn room_is_seen_and_lit_from_inside() {
     room.triangles.iter_mut().for_each(|t| t.swap(0, 1));
     let scene = staged(room, Transform::translate(Vec3::new(10.0, 0.0, 0.0)));
     let inside = |p: Vec3| (p.x - 10.0).abs() < 2.0 && p.y.abs() < 1.5 && p.z.abs() < 3.0;
-    assert!(
-        inside(scene.camera.eye) && scene.camera.eye.z > 2.0,
-        "{}",
-        scene.camera.eye
-    );
+    assert!(inside(scene.camera.eye) && scene.camera.eye.z > 2.0, "{}", scene.camera.eye);
     for light in &scene.lights {
-        let LightKind::Point { position } = light.kind else {
-            panic!("{light:?}")
-        };
+        let LightKind::Point { position } = light.kind else { panic!("{light:?}") };
         assert!(inside(position), "{position}");
     }
 }
@@ -372,12 +269,8 @@ fn room_is_seen_and_lit_from_inside() {
 #[test]
 fn own_camera_and_lights_are_kept() {
     let mut scene = staging::bare_scene(Path::new("own.gltf"));
-    let camera = Camera {
-        eye: Vec3::X,
-        target: Vec3::Y,
-        up: Vec3::Z,
-        projection: Projection::Orthographic { height: 2.0 },
-    };
+    let camera =
+        Camera { eye: Vec3::X, target: Vec3::Y, up: Vec3::Z, projection: Projection::Orthographic { height: 2.0 } };
     scene.camera = camera;
     staging::stage(&mut scene);
     assert_eq!(scene.camera, camera);
@@ -386,15 +279,6 @@ fn own_camera_and_lights_are_kept() {
     let mut scene = staging::bare_scene(Path::new("own.gltf"));
     scene.lights = lights.clone();
     staging::stage(&mut scene);
-    assert_eq!(
-        (scene.lights, scene.background),
-        (
-            lights,
-            Background {
-                bottom: Rgb::ZERO,
-                top: Rgb::ZERO
-            }
-        )
-    );
+    assert_eq!((scene.lights, scene.background), (lights, Background { bottom: Rgb::ZERO, top: Rgb::ZERO }));
     assert!(scene.camera.eye != scene.camera.target);
 }

@@ -47,7 +47,8 @@ fn every_scene_has_its_recorded_hash_on_the_cpu() {
         std::fs::create_dir_all(file.parent().unwrap()).unwrap();
         std::fs::write(&file, serde_json::to_string_pretty(&found).unwrap() + "\n").unwrap();
     }
-    let text = std::fs::read_to_string(&file).expect("tests/goldens/film-hashes.json is missing; GONIO_BLESS=1 writes it");
+    let text =
+        std::fs::read_to_string(&file).expect("tests/goldens/film-hashes.json is missing; GONIO_BLESS=1 writes it");
     let recorded: BTreeMap<String, String> = serde_json::from_str(&text).unwrap();
     let wrong: Vec<_> = found.iter().filter(|(scene, hash)| recorded.get(*scene) != Some(hash)).collect();
     assert!(wrong.is_empty(), "other hashes than recorded: {wrong:#?}");

@@ -7,23 +7,13 @@ use gonio::shading::sampling::*;
 const SAMPLERS: [u32; 3] = [SAMPLER_SOBOL, SAMPLER_STRATIFIED, SAMPLER_INDEPENDENT];
 
 fn key(sampling: u32, pixel: u32, sample_index: u32) -> SampleKey {
-    SampleKey {
-        sampling,
-        strata: 4,
-        seed: 7,
-        pixel,
-        sample_index,
-        path_id: 3,
-    }
+    SampleKey { sampling, strata: 4, seed: 7, pixel, sample_index, path_id: 3 }
 }
 
 /// Chi-square of counts that should be equal, minus degrees of freedom, in standard deviations.
 fn deviation(counts: &[u32]) -> f64 {
     let mean = counts.iter().sum::<u32>() as f64 / counts.len() as f64;
-    let chi2: f64 = counts
-        .iter()
-        .map(|&count| (count as f64 - mean).powi(2) / mean)
-        .sum();
+    let chi2: f64 = counts.iter().map(|&count| (count as f64 - mean).powi(2) / mean).sum();
     let freedom = (counts.len() - 1) as f64;
     (chi2 - freedom) / (2.0 * freedom).sqrt()
 }
@@ -39,10 +29,7 @@ fn grid(values: impl Iterator<Item = (f32, f32)>, side: usize) -> Vec<u32> {
 
 #[test]
 fn unit_floats_are_below_one_and_exact() {
-    assert_eq!(
-        (unit_float(0), unit_float(255), unit_float(256)),
-        (0.0, 0.0, 1.0 / 16777216.0)
-    );
+    assert_eq!((unit_float(0), unit_float(255), unit_float(256)), (0.0, 0.0, 1.0 / 16777216.0));
     assert_eq!(unit_float(u32::MAX), 1.0 - 1.0 / 16777216.0);
     assert_eq!(unit_float(0x80000000), 0.5);
 }
@@ -51,11 +38,7 @@ fn unit_floats_are_below_one_and_exact() {
 fn hashes_have_avalanche() {
     let seeded: fn(u32) -> u32 = |x| hash_combine(x, 12345);
     let valued: fn(u32) -> u32 = |x| hash_combine(12345, x);
-    for (hash, inputs) in [
-        (hash_u32 as fn(u32) -> u32, 1 << 16),
-        (seeded, 1 << 14),
-        (valued, 1 << 14),
-    ] {
+    for (hash, inputs) in [(hash_u32 as fn(u32) -> u32, 1 << 16), (seeded, 1 << 14), (valued, 1 << 14)] {
         for bit in 0..32 {
             let mut flips = [0u32; 32];
             for i in 0..inputs {
@@ -66,10 +49,7 @@ fn hashes_have_avalanche() {
             for (j, &count) in flips.iter().enumerate() {
                 let share = count as f64 / inputs as f64;
                 let noise = 5.0 * (0.25 / inputs as f64).sqrt();
-                assert!(
-                    (share - 0.5).abs() < 0.01 + noise,
-                    "bit {bit} flips bit {j} in {share}"
-                );
+                assert!((share - 0.5).abs() < 0.01 + noise, "bit {bit} flips bit {j} in {share}");
             }
         }
     }
@@ -98,10 +78,7 @@ fn every_aligned_block_of_sobol_samples_fills_every_elementary_interval() {
                         let row = (p.y * (1 << (k - x_bits)) as f32) as usize;
                         hit[(row << x_bits) + column] += 1;
                     }
-                    assert!(
-                        hit.iter().all(|&hit| hit == 1),
-                        "block {block} of 2^{k}, 2^{x_bits} columns"
-                    );
+                    assert!(hit.iter().all(|&hit| hit == 1), "block {block} of 2^{k}, 2^{x_bits} columns");
                 }
             }
         }
@@ -129,23 +106,14 @@ fn every_aligned_block_of_stratified_samples_fills_every_stratum() {
         for block in [0, 1, 5] {
             let (mut flat, mut line) = (vec![0u32; count as usize], vec![0u32; count as usize]);
             for i in block * count..(block + 1) * count {
-                let key = SampleKey {
-                    strata,
-                    ..key(SAMPLER_STRATIFIED, block, i)
-                };
+                let key = SampleKey { strata, ..key(SAMPLER_STRATIFIED, block, i) };
                 let p = sample_2d(key, 3);
                 let cell = |u: f32, cells: u32| (u as f64 * cells as f64) as u32;
                 flat[(cell(p.y, side) * side + cell(p.x, side)) as usize] += 1;
                 line[cell(sample_1d(key, 3), count) as usize] += 1;
             }
-            assert!(
-                flat.iter().all(|&hit| hit == 1),
-                "{strata} x {strata} strata, block {block}"
-            );
-            assert!(
-                line.iter().all(|&hit| hit == 1),
-                "{count} strata, block {block}"
-            );
+            assert!(flat.iter().all(|&hit| hit == 1), "{strata} x {strata} strata, block {block}");
+            assert!(line.iter().all(|&hit| hit == 1), "{count} strata, block {block}");
         }
     }
 }
@@ -175,21 +143,11 @@ fn each_sample_is_uniform_over_pixels_paths_dimensions_and_seeds() {
             ];
             for (what, vary) in keys.iter().enumerate() {
                 let each = |i| vary(key(sampling, 5, index), i);
-                let flat = (0..16_384)
-                    .map(|i| each(i))
-                    .map(|(key, dimension)| sample_2d(key, dimension).into());
-                let line = (0..16_384)
-                    .map(|i| each(i))
-                    .map(|(key, dimension)| (sample_1d(key, dimension), 0.0));
+                let flat = (0..16_384).map(|i| each(i)).map(|(key, dimension)| sample_2d(key, dimension).into());
+                let line = (0..16_384).map(|i| each(i)).map(|(key, dimension)| (sample_1d(key, dimension), 0.0));
                 let (flat, line) = (grid(flat, 16), grid(line, 16));
-                assert!(
-                    deviation(&flat).abs() < 5.0,
-                    "sampler {sampling}, index {index}, variation {what}"
-                );
-                assert!(
-                    deviation(&line[..16]).abs() < 5.0,
-                    "sampler {sampling}, index {index}, variation {what}"
-                );
+                assert!(deviation(&flat).abs() < 5.0, "sampler {sampling}, index {index}, variation {what}");
+                assert!(deviation(&line[..16]).abs() < 5.0, "sampler {sampling}, index {index}, variation {what}");
             }
         }
     }
@@ -201,35 +159,11 @@ fn samples_of_different_pixels_paths_and_dimensions_are_independent() {
     for sampling in SAMPLERS {
         let here = |i: u32| key(sampling, 100 + (i >> 6), i & 63);
         let others: [fn(SampleKey) -> (SampleKey, u32); 5] = [
-            |key| {
-                (
-                    SampleKey {
-                        pixel: key.pixel ^ 65_536,
-                        ..key
-                    },
-                    0,
-                )
-            },
-            |key| {
-                (
-                    SampleKey {
-                        path_id: key.path_id + 1,
-                        ..key
-                    },
-                    0,
-                )
-            },
+            |key| (SampleKey { pixel: key.pixel ^ 65_536, ..key }, 0),
+            |key| (SampleKey { path_id: key.path_id + 1, ..key }, 0),
             |key| (key, 1),
             |key| (key, 0x10000),
-            |key| {
-                (
-                    SampleKey {
-                        seed: key.seed + 1,
-                        ..key
-                    },
-                    0,
-                )
-            },
+            |key| (SampleKey { seed: key.seed + 1, ..key }, 0),
         ];
         for (what, other) in others.iter().enumerate() {
             let pair = |i: u32| {
@@ -237,19 +171,13 @@ fn samples_of_different_pixels_paths_and_dimensions_are_independent() {
                 (sample_2d(here(i), 0).x, sample_2d(there, dimension).x)
             };
             let off = deviation(&grid((0..65_536).map(pair), 16));
-            assert!(
-                off.abs() < 5.0,
-                "sampler {sampling}, pair {what}: {off} deviations"
-            );
+            assert!(off.abs() < 5.0, "sampler {sampling}, pair {what}: {off} deviations");
             let pair = |i: u32| {
                 let (there, dimension) = other(here(i));
                 (sample_1d(here(i), 0), sample_2d(there, dimension).y)
             };
             let off = deviation(&grid((0..65_536).map(pair), 16));
-            assert!(
-                off.abs() < 5.0,
-                "sampler {sampling}, pair {what}: {off} deviations"
-            );
+            assert!(off.abs() < 5.0, "sampler {sampling}, pair {what}: {off} deviations");
         }
     }
 }
@@ -260,18 +188,13 @@ fn stratified_order_is_a_fair_shuffle() {
     for (i, j) in [(0, 1), (0, 15), (7, 8), (3, 12)] {
         let mut pairs = vec![0u32; 256];
         for pixel in 0..65_536 {
-            let stratum =
-                |index| (sample_1d(key(SAMPLER_STRATIFIED, pixel, index), 1) * 16.0) as usize;
+            let stratum = |index| (sample_1d(key(SAMPLER_STRATIFIED, pixel, index), 1) * 16.0) as usize;
             pairs[stratum(i) * 16 + stratum(j)] += 1;
         }
         let (same, different): (Vec<_>, Vec<_>) = (0..256).partition(|cell| cell / 16 == cell % 16);
         assert!(same.iter().all(|&cell: &usize| pairs[cell] == 0));
         let different: Vec<u32> = different.iter().map(|&cell: &usize| pairs[cell]).collect();
-        assert!(
-            deviation(&different) < 8.0,
-            "samples {i} and {j}: {}",
-            deviation(&different)
-        );
+        assert!(deviation(&different) < 8.0, "samples {i} and {j}: {}", deviation(&different));
     }
 }
 
@@ -279,43 +202,17 @@ fn stratified_order_is_a_fair_shuffle() {
 fn dithering_is_uniform_and_knows_every_part_of_its_key() {
     let base = key(SAMPLER_SOBOL, 1, 0);
     let hash = |key, dimension| unit_float(dither_hash(key, dimension));
-    let pairs = (0..65_536).map(|i| {
-        (
-            hash(
-                SampleKey {
-                    sample_index: i,
-                    ..base
-                },
-                0,
-            ),
-            hash(
-                SampleKey {
-                    sample_index: i,
-                    ..base
-                },
-                1,
-            ),
-        )
-    });
+    let pairs = (0..65_536)
+        .map(|i| (hash(SampleKey { sample_index: i, ..base }, 0), hash(SampleKey { sample_index: i, ..base }, 1)));
     assert!(deviation(&grid(pairs, 16)).abs() < 5.0);
-    let against = (0..65_536).map(|i| SampleKey {
-        sampling: SAMPLER_INDEPENDENT,
-        sample_index: i,
-        ..base
-    });
+    let against = (0..65_536).map(|i| SampleKey { sampling: SAMPLER_INDEPENDENT, sample_index: i, ..base });
     let against = against.map(|key| (hash(key, 0), sample_1d(key, 0)));
-    assert!(
-        deviation(&grid(against, 16)).abs() < 5.0,
-        "correlated with a sample"
-    );
+    assert!(deviation(&grid(against, 16)).abs() < 5.0, "correlated with a sample");
     let others = [
         SampleKey { seed: 8, ..base },
         SampleKey { pixel: 2, ..base },
         SampleKey { path_id: 4, ..base },
-        SampleKey {
-            sample_index: 1,
-            ..base
-        },
+        SampleKey { sample_index: 1, ..base },
     ];
     for other in others {
         assert_ne!(dither_hash(base, 0), dither_hash(other, 0));
@@ -336,11 +233,7 @@ mod by_the_book {
             if (index >> bit) & 1 == 1 {
                 point ^= direction;
             }
-            direction = if second {
-                direction ^ (direction >> 1)
-            } else {
-                direction >> 1
-            };
+            direction = if second { direction ^ (direction >> 1) } else { direction >> 1 };
         }
         point
     }
@@ -368,11 +261,7 @@ fn sobol_samples_equal_those_of_an_implementation_with_loops() {
         let y = by_the_book::owen(by_the_book::sobol(index, true), seed_y);
         let p = sample_2d(key(SAMPLER_SOBOL, 11, i), 6);
         assert_eq!((p.x, p.y), (unit_float(x), unit_float(y)), "sample {i}");
-        assert_eq!(
-            sample_1d(key(SAMPLER_SOBOL, 11, i), 6),
-            unit_float(x),
-            "sample {i}"
-        );
+        assert_eq!(sample_1d(key(SAMPLER_SOBOL, 11, i), 6), unit_float(x), "sample {i}");
     }
 }
 
@@ -384,18 +273,7 @@ fn the_first_values_stay_what_they_are() {
         [p.x, p.y, sample_1d(key(sampling, 0, 1), 1)].map(|u| (u * 16777216.0) as u32)
     };
     let got: Vec<[u32; 3]> = SAMPLERS.iter().map(|&sampling| bits(sampling)).collect();
-    let want = [
-        [1593857, 8325645, 4759881],
-        [5609551, 7166238, 15599269],
-        [5660989, 11887737, 14707291],
-    ];
+    let want = [[1593857, 8325645, 4759881], [5609551, 7166238, 15599269], [5660989, 11887737, 14707291]];
     assert_eq!(got, want);
-    assert_eq!(
-        (
-            hash_u32(1),
-            hash_combine(1, 2),
-            dither_hash(key(0, 0, 0), 0)
-        ),
-        (114555507, 3470671210, 1243672428)
-    );
+    assert_eq!((hash_u32(1), hash_combine(1, 2), dither_hash(key(0, 0, 0), 0)), (114555507, 3470671210, 1243672428));
 }

@@ -3,8 +3,8 @@
 use glam::{DVec3, Vec3};
 use gonio::scene::Mesh;
 use gonio::scene::shape::{
-    HeightGrid, Profile, ProfileKind, TEAPOT_PATCHES, cone, cuboid, cylinder, disk,
-    fractal_heights, height_field, lathe, quad, sphere_mesh, teapot, teapot_control_points, torus,
+    HeightGrid, Profile, ProfileKind, TEAPOT_PATCHES, cone, cuboid, cylinder, disk, fractal_heights, height_field,
+    lathe, quad, sphere_mesh, teapot, teapot_control_points, torus,
 };
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -47,26 +47,14 @@ fn directed_edges(mesh: &Mesh) -> HashMap<([u32; 3], [u32; 3]), usize> {
 /// Edges that lack their twin in the other direction.
 fn open_edges(mesh: &Mesh) -> Vec<([u32; 3], [u32; 3])> {
     let edges = directed_edges(mesh);
-    assert!(
-        edges.values().all(|n| *n == 1),
-        "{}: an edge is used twice in one direction",
-        mesh.name
-    );
-    edges
-        .keys()
-        .filter(|(a, b)| !edges.contains_key(&(*b, *a)))
-        .copied()
-        .collect()
+    assert!(edges.values().all(|n| *n == 1), "{}: an edge is used twice in one direction", mesh.name);
+    edges.keys().filter(|(a, b)| !edges.contains_key(&(*b, *a))).copied().collect()
 }
 
 /// What every shape promises, closed or not.
 fn check(mesh: &Mesh) {
     let n = mesh.positions.len();
-    assert!(
-        !mesh.triangles.is_empty() && mesh.normals.len() == n && mesh.uvs.len() == n,
-        "{}",
-        mesh.name
-    );
+    assert!(!mesh.triangles.is_empty() && mesh.normals.len() == n && mesh.uvs.len() == n, "{}", mesh.name);
     let mut used = vec![false; n];
     for (f, triangle) in mesh.triangles.iter().enumerate() {
         let [a, b, c] = corners(mesh, f);
@@ -74,22 +62,10 @@ fn check(mesh: &Mesh) {
         for &i in triangle {
             used[i as usize] = true;
             let normal = mesh.normals[i as usize].as_dvec3();
-            assert!(
-                (normal.length() - 1.0).abs() < 1e-6,
-                "{} normal {normal}",
-                mesh.name
-            );
-            assert!(
-                normal.dot(face) > 0.0,
-                "{} face {f}: normal {normal} against {face}",
-                mesh.name
-            );
+            assert!((normal.length() - 1.0).abs() < 1e-6, "{} normal {normal}", mesh.name);
+            assert!(normal.dot(face) > 0.0, "{} face {f}: normal {normal} against {face}", mesh.name);
             let uv = mesh.uvs[i as usize];
-            assert!(
-                uv.min_element() >= 0.0 && uv.max_element() <= 1.0,
-                "{} uv {uv}",
-                mesh.name
-            );
+            assert!(uv.min_element() >= 0.0 && uv.max_element() <= 1.0, "{} uv {uv}", mesh.name);
         }
     }
     assert!(used.iter().all(|u| *u), "{} has unused vertices", mesh.name);
@@ -99,63 +75,28 @@ fn check_closed(mesh: &Mesh, area_expected: f64, volume_expected: f64) {
     check(mesh);
     assert_eq!(open_edges(mesh).len(), 0, "{} is not watertight", mesh.name);
     let (a, v) = (area(mesh), volume(mesh));
-    assert!(
-        (a / area_expected - 1.0).abs() < 0.01,
-        "{}: area {a}, expected {area_expected}",
-        mesh.name
-    );
-    assert!(
-        (v / volume_expected - 1.0).abs() < 0.01,
-        "{}: volume {v}, expected {volume_expected}",
-        mesh.name
-    );
+    assert!((a / area_expected - 1.0).abs() < 0.01, "{}: area {a}, expected {area_expected}", mesh.name);
+    assert!((v / volume_expected - 1.0).abs() < 0.01, "{}: volume {v}, expected {volume_expected}", mesh.name);
 }
 
 fn vessel(kind: ProfileKind) -> Profile {
-    let points = vec![
-        [0.0, 0.0],
-        [1.0, 0.0],
-        [1.5, 1.0],
-        [1.2, 2.0],
-        [1.1, 2.0],
-        [1.4, 1.0],
-        [0.9, 0.1],
-        [0.0, 0.1],
-    ];
-    Profile {
-        points,
-        kind,
-        steps: 8,
-        crease: 0.5,
-    }
+    let points = vec![[0.0, 0.0], [1.0, 0.0], [1.5, 1.0], [1.2, 2.0], [1.1, 2.0], [1.4, 1.0], [0.9, 0.1], [0.0, 0.1]];
+    Profile { points, kind, steps: 8, crease: 0.5 }
 }
 
 #[test]
 fn closed_shapes_are_watertight_and_have_the_area_and_volume_of_their_closed_form() {
     check_closed(&cuboid([1.0, 2.0, 3.0], 1), 22.0, 6.0);
-    check_closed(
-        &cuboid([0.1, 0.7, 0.3], 5),
-        2.0 * (0.07 + 0.21 + 0.03),
-        0.021,
-    );
+    check_closed(&cuboid([0.1, 0.7, 0.3], 5), 2.0 * (0.07 + 0.21 + 0.03), 0.021);
     check_closed(&sphere_mesh(2.0, 96), 16.0 * PI, 32.0 / 3.0 * PI);
-    check_closed(
-        &cylinder(0.5, 3.0, true, 96),
-        3.0 * PI + 0.5 * PI,
-        0.75 * PI,
-    );
+    check_closed(&cylinder(0.5, 3.0, true, 96), 3.0 * PI + 0.5 * PI, 0.75 * PI);
     check_closed(&cone(1.5, 2.0, true, 96), 1.5 * PI * (2.5 + 1.5), 1.5 * PI);
     check_closed(&torus(2.0, 0.5, 96, 64), 4.0 * PI * PI, PI * PI);
 }
 
 #[test]
 fn coarsest_closed_shapes_are_watertight() {
-    for mesh in [
-        sphere_mesh(1.0, 3),
-        cylinder(1.0, 1.0, true, 3),
-        cone(1.0, 1.0, true, 3),
-        torus(1.0, 0.3, 3, 3),
-    ] {
+    for mesh in [sphere_mesh(1.0, 3), cylinder(1.0, 1.0, true, 3), cone(1.0, 1.0, true, 3), torus(1.0, 0.3, 3, 3)] {
         check(&mesh);
         assert_eq!(open_edges(&mesh).len(), 0, "{}", mesh.name);
         assert!(volume(&mesh) > 0.0);
@@ -168,9 +109,7 @@ fn open_shapes_have_their_area_and_face_up() {
     for (mesh, expected) in cases {
         check(&mesh);
         assert!((area(&mesh) / expected - 1.0).abs() < 0.01);
-        assert!(
-            mesh.normals.iter().all(|n| *n == Vec3::Y) && mesh.positions.iter().all(|p| p.y == 0.0)
-        );
+        assert!(mesh.normals.iter().all(|n| *n == Vec3::Y) && mesh.positions.iter().all(|p| p.y == 0.0));
     }
     check(&cylinder(1.0, 1.0, false, 12));
     assert_eq!(open_edges(&cylinder(1.0, 1.0, false, 12)).len(), 24);
@@ -181,11 +120,7 @@ fn open_shapes_have_their_area_and_face_up() {
 fn quad_carries_an_image_as_it_lies_seen_from_above() {
     let mesh = quad([2.0, 2.0], 1);
     let uv_at = |x: f32, z: f32| {
-        let i = mesh
-            .positions
-            .iter()
-            .position(|p| *p == Vec3::new(x, 0.0, z))
-            .expect("a corner");
+        let i = mesh.positions.iter().position(|p| *p == Vec3::new(x, 0.0, z)).expect("a corner");
         mesh.uvs[i].to_array()
     };
     assert_eq!(uv_at(-1.0, 1.0), [0.0, 0.0]);
@@ -197,10 +132,7 @@ fn quad_carries_an_image_as_it_lies_seen_from_above() {
 fn sphere_vertices_lie_on_the_sphere_with_its_normals() {
     let mesh = sphere_mesh(3.0, 24);
     for (p, n) in mesh.positions.iter().zip(&mesh.normals) {
-        assert!(
-            (p.as_dvec3().length() - 3.0).abs() < 1e-6 && (*p / 3.0 - *n).length() < 1e-6,
-            "{p} {n}"
-        );
+        assert!((p.as_dvec3().length() - 3.0).abs() < 1e-6 && (*p / 3.0 - *n).length() < 1e-6, "{p} {n}");
     }
 }
 
@@ -213,59 +145,33 @@ fn lathe_closes_a_vessel_and_rounds_or_creases_its_profile() {
     }
     // Straight pieces are frusta: pi/3 h (R^2 + R r + r^2), outside less inside.
     let frustum = |r0: f64, r1: f64, h: f64| PI / 3.0 * h * (r0 * r0 + r0 * r1 + r1 * r1);
-    let solid = frustum(1.0, 1.5, 1.0) + frustum(1.5, 1.2, 1.0)
-        - frustum(1.4, 1.1, 1.0)
-        - frustum(0.9, 1.4, 0.9);
+    let solid = frustum(1.0, 1.5, 1.0) + frustum(1.5, 1.2, 1.0) - frustum(1.4, 1.1, 1.0) - frustum(0.9, 1.4, 0.9);
     let mesh = lathe(&vessel(ProfileKind::Polyline), 256).expect("a valid profile");
-    assert!(
-        (volume(&mesh) / solid - 1.0).abs() < 0.001,
-        "{} {solid}",
-        volume(&mesh)
-    );
+    assert!((volume(&mesh) / solid - 1.0).abs() < 0.001, "{} {solid}", volume(&mesh));
 }
 
 #[test]
 fn lathe_through_points_of_a_semicircle_is_nearly_a_sphere() {
-    let points = (0..=8)
-        .map(|i| (i, PI * f64::from(i) / 8.0))
-        .map(|(i, t)| [if i == 8 { 0.0 } else { t.sin() }, -t.cos()]);
-    let profile = Profile {
-        points: points.collect(),
-        kind: ProfileKind::Smooth,
-        steps: 8,
-        crease: 0.0,
-    };
+    let points =
+        (0..=8).map(|i| (i, PI * f64::from(i) / 8.0)).map(|(i, t)| [if i == 8 { 0.0 } else { t.sin() }, -t.cos()]);
+    let profile = Profile { points: points.collect(), kind: ProfileKind::Smooth, steps: 8, crease: 0.0 };
     let mesh = lathe(&profile, 64).expect("a valid profile");
     check_closed(&mesh, 4.0 * PI, 4.0 / 3.0 * PI);
     for (p, n) in mesh.positions.iter().zip(&mesh.normals) {
-        assert!(
-            (p.length() - 1.0).abs() < 0.02 && p.normalize().dot(*n) > 0.98,
-            "{p} {n}"
-        );
+        assert!((p.length() - 1.0).abs() < 0.02 && p.normalize().dot(*n) > 0.98, "{p} {n}");
     }
 }
 
 #[test]
 fn lathe_refuses_bad_profiles_and_says_why() {
-    let with = |points: Vec<[f64; 2]>| Profile {
-        points,
-        kind: ProfileKind::Smooth,
-        steps: 4,
-        crease: 0.0,
-    };
+    let with = |points: Vec<[f64; 2]>| Profile { points, kind: ProfileKind::Smooth, steps: 4, crease: 0.0 };
     let cases = [
         (with(vec![[1.0, 0.0]]), "1 points"),
         (with(vec![[1.0, 0.0], [-0.5, 1.0]]), "point 1"),
         (with(vec![[1.0, 0.0], [f64::NAN, 1.0]]), "point 1"),
         (with(vec![[1.0, 0.0], [1.0, 0.0]]), "the same"),
         (with(vec![[0.0, 0.0], [0.0, 1.0]]), "all radii"),
-        (
-            Profile {
-                steps: 0,
-                ..with(vec![[1.0, 0.0], [1.0, 1.0]])
-            },
-            "0 steps",
-        ),
+        (Profile { steps: 0, ..with(vec![[1.0, 0.0], [1.0, 1.0]]) }, "0 steps"),
     ];
     for (profile, expected) in cases {
         let message = lathe(&profile, 8).expect_err("a bad profile");
@@ -277,38 +183,18 @@ fn lathe_refuses_bad_profiles_and_says_why() {
 fn teapot_has_thirty_two_patches_and_stands_on_the_ground() {
     let patches = teapot_control_points();
     assert_eq!(patches.len(), TEAPOT_PATCHES);
-    let mut unique: Vec<[u64; 3]> = patches
-        .as_flattened()
-        .as_flattened()
-        .iter()
-        .map(|p| (*p + DVec3::ZERO).to_array().map(f64::to_bits))
-        .collect();
+    let mut unique: Vec<[u64; 3]> =
+        patches.as_flattened().as_flattened().iter().map(|p| (*p + DVec3::ZERO).to_array().map(f64::to_bits)).collect();
     unique.sort_unstable();
     unique.dedup();
     // Newell lists 306 points, of which 16 coincide with others.
     assert_eq!(unique.len(), 290);
     let mesh = teapot(8);
     check(&mesh);
-    let low = mesh
-        .positions
-        .iter()
-        .copied()
-        .reduce(Vec3::min)
-        .expect("points");
-    let high = mesh
-        .positions
-        .iter()
-        .copied()
-        .reduce(Vec3::max)
-        .expect("points");
-    assert!(
-        (low - Vec3::new(-3.0, 0.0, -2.0)).abs().max_element() < 1e-6,
-        "{low}"
-    );
-    assert!(
-        (high - Vec3::new(3.434, 3.15, 2.0)).abs().max_element() < 2e-3,
-        "{high}"
-    );
+    let low = mesh.positions.iter().copied().reduce(Vec3::min).expect("points");
+    let high = mesh.positions.iter().copied().reduce(Vec3::max).expect("points");
+    assert!((low - Vec3::new(-3.0, 0.0, -2.0)).abs().max_element() < 1e-6, "{low}");
+    assert!((high - Vec3::new(3.434, 3.15, 2.0)).abs().max_element() < 2e-3, "{high}");
 }
 
 #[test]
@@ -344,9 +230,7 @@ fn distance_squared(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
         (a + (b - a) * t - p).length_squared()
     };
     let n = (b - a).cross(c - a);
-    let inside = [(a, b), (b, c), (c, a)]
-        .iter()
-        .all(|(u, v)| (*v - *u).cross(p - *u).dot(n) >= 0.0);
+    let inside = [(a, b), (b, c), (c, a)].iter().all(|(u, v)| (*v - *u).cross(p - *u).dot(n) >= 0.0);
     if inside && n.length_squared() > 0.0 {
         return (p - a).dot(n).powi(2) / n.length_squared();
     }
@@ -361,22 +245,13 @@ fn teapot_lies_within_a_fiftieth_of_the_published_mesh() {
         return;
     };
     let points = text.lines().filter_map(|l| l.strip_prefix("v ")).map(|l| {
-        let mut numbers = l
-            .split_whitespace()
-            .map(|t| t.parse::<f64>().expect("a number"));
-        DVec3::from_array(std::array::from_fn(|_| {
-            numbers.next().expect("three numbers")
-        }))
+        let mut numbers = l.split_whitespace().map(|t| t.parse::<f64>().expect("a number"));
+        DVec3::from_array(std::array::from_fn(|_| numbers.next().expect("three numbers")))
     });
     let mesh = teapot(10);
-    let faces: Vec<[DVec3; 3]> = (0..mesh.triangles.len())
-        .map(|f| corners(&mesh, f))
-        .collect();
+    let faces: Vec<[DVec3; 3]> = (0..mesh.triangles.len()).map(|f| corners(&mesh, f)).collect();
     for p in points.step_by(13) {
-        let nearest = faces
-            .iter()
-            .map(|f| distance_squared(p, *f))
-            .fold(f64::MAX, f64::min);
+        let nearest = faces.iter().map(|f| distance_squared(p, *f)).fold(f64::MAX, f64::min);
         assert!(nearest.sqrt() < 0.02, "{p} is {} away", nearest.sqrt());
     }
 }
@@ -384,48 +259,16 @@ fn teapot_lies_within_a_fiftieth_of_the_published_mesh() {
 #[test]
 fn height_field_of_a_plane_has_its_slope_and_of_a_file_of_the_wrong_size_is_refused() {
     let heights = (0..12).map(|i| (i % 4) as f32).collect();
-    let grid = HeightGrid {
-        columns: 4,
-        rows: 3,
-        heights,
-    };
+    let grid = HeightGrid { columns: 4, rows: 3, heights };
     let mesh = height_field(&grid, [3.0, 2.0], 2.0).expect("a valid grid");
     check(&mesh);
     let expected = Vec3::new(-2.0, 1.0, 0.0).normalize();
-    assert!(
-        mesh.normals.iter().all(|n| (*n - expected).length() < 1e-6),
-        "{:?}",
-        mesh.normals
-    );
+    assert!(mesh.normals.iter().all(|n| (*n - expected).length() < 1e-6), "{:?}", mesh.normals);
     // The first row is an image's top, at -z.
-    let top_left = mesh
-        .positions
-        .iter()
-        .position(|p| *p == Vec3::new(-1.5, 0.0, -1.0))
-        .expect("a corner");
+    let top_left = mesh.positions.iter().position(|p| *p == Vec3::new(-1.5, 0.0, -1.0)).expect("a corner");
     assert_eq!(mesh.uvs[top_left].to_array(), [0.0, 1.0]);
-    assert!(
-        height_field(
-            &HeightGrid {
-                rows: 4,
-                ..grid.clone()
-            },
-            [1.0, 1.0],
-            1.0
-        )
-        .is_err()
-    );
-    assert!(
-        height_field(
-            &HeightGrid {
-                heights: vec![f32::NAN; 12],
-                ..grid
-            },
-            [1.0, 1.0],
-            1.0
-        )
-        .is_err()
-    );
+    assert!(height_field(&HeightGrid { rows: 4, ..grid.clone() }, [1.0, 1.0], 1.0).is_err());
+    assert!(height_field(&HeightGrid { heights: vec![f32::NAN; 12], ..grid }, [1.0, 1.0], 1.0).is_err());
 }
 
 #[test]
@@ -434,18 +277,8 @@ fn fractal_landscape_depends_on_its_seed_and_stays_in_range() {
     assert_eq!(heights(1), heights(1));
     assert_ne!(heights(1), heights(2));
     let h = heights(7);
-    assert!(
-        h.iter().all(|h| h.abs() < 2.0)
-            && h.iter().any(|h| *h > 0.2)
-            && h.iter().any(|h| *h < -0.2)
-    );
+    assert!(h.iter().all(|h| h.abs() < 2.0) && h.iter().any(|h| *h > 0.2) && h.iter().any(|h| *h < -0.2));
     // Continuous: neighbours differ little.
-    assert!(
-        h.windows(2)
-            .enumerate()
-            .all(|(i, w)| i % 65 == 64 || (w[0] - w[1]).abs() < 0.5)
-    );
-    check(
-        &height_field(&fractal_heights(33, 3.0, 5, 0.5, 3), [4.0, 4.0], 0.7).expect("a valid grid"),
-    );
+    assert!(h.windows(2).enumerate().all(|(i, w)| i % 65 == 64 || (w[0] - w[1]).abs() < 0.5));
+    check(&height_field(&fractal_heights(33, 3.0, 5, 0.5, 3), [4.0, 4.0], 0.7).expect("a valid grid"));
 }

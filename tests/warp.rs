@@ -15,21 +15,10 @@ use proptest::prelude::*;
 /// Random points, then the grid's corners and centre lines, where warps have their seams.
 fn points() -> impl Iterator<Item = Vec2> {
     let random = (0..65_536).map(|sample_index| {
-        sample_2d(
-            SampleKey {
-                sampling: SAMPLER_INDEPENDENT,
-                sample_index,
-                ..SampleKey::default()
-            },
-            0,
-        )
+        sample_2d(SampleKey { sampling: SAMPLER_INDEPENDENT, sample_index, ..SampleKey::default() }, 0)
     });
     let seams = [0.0, 5.9604645e-8, 0.25, 0.5, 0.75, 0.99999994];
-    random.chain(
-        seams
-            .into_iter()
-            .flat_map(move |x| seams.map(|y| Vec2::new(x, y))),
-    )
+    random.chain(seams.into_iter().flat_map(move |x| seams.map(|y| Vec2::new(x, y))))
 }
 
 /// Asserts that pairs, which should be uniform in the unit square, are so by chi-square in 16 x 16 cells.
@@ -37,22 +26,13 @@ fn points() -> impl Iterator<Item = Vec2> {
 fn assert_uniform(pairs: impl Iterator<Item = (f64, f64)>) {
     let mut counts = [0u32; 256];
     for (x, y) in pairs {
-        assert!(
-            (-1e-6..=1.000001).contains(&x) && (-1e-6..=1.000001).contains(&y),
-            "({x}, {y})"
-        );
+        assert!((-1e-6..=1.000001).contains(&x) && (-1e-6..=1.000001).contains(&y), "({x}, {y})");
         let cell = |u: f64| (u.clamp(0.0, 0.999999) * 16.0) as usize;
         counts[cell(y) * 16 + cell(x)] += 1;
     }
     let mean = counts.iter().sum::<u32>() as f64 / 256.0;
-    let chi2: f64 = counts
-        .iter()
-        .map(|&count| (count as f64 - mean).powi(2) / mean)
-        .sum();
-    assert!(
-        (chi2 - 255.0).abs() < 5.0 * 510f64.sqrt(),
-        "chi-square {chi2} at 255 degrees of freedom"
-    );
+    let chi2: f64 = counts.iter().map(|&count| (count as f64 - mean).powi(2) / mean).sum();
+    assert!((chi2 - 255.0).abs() < 5.0 * 510f64.sqrt(), "chi-square {chi2} at 255 degrees of freedom");
 }
 
 /// 0..1
@@ -62,11 +42,7 @@ fn azimuth(x: f32, y: f32) -> f64 {
 
 #[test]
 fn disks_are_filled_uniformly() {
-    assert_uniform(
-        points()
-            .map(square_to_disk)
-            .map(|p| (p.as_dvec2().length_squared(), azimuth(p.x, p.y))),
-    );
+    assert_uniform(points().map(square_to_disk).map(|p| (p.as_dvec2().length_squared(), azimuth(p.x, p.y))));
 }
 
 #[test]
@@ -80,17 +56,10 @@ fn disks_equal_the_paper() {
             (false, false) => (-a, 4.0 + b / a),
             (false, true) => (-b, 6.0 - a / b),
         };
-        let angle = if radius == 0.0 {
-            0.0
-        } else {
-            PI / 4.0 * eighths
-        };
+        let angle = if radius == 0.0 { 0.0 } else { PI / 4.0 * eighths };
         let p = square_to_disk(u).as_dvec2();
         let (x, y) = (radius * libm::cos(angle), radius * libm::sin(angle));
-        assert!(
-            (p.x - x).abs() < 3e-7 && (p.y - y).abs() < 3e-7,
-            "{u}: {p} instead of ({x}, {y})"
-        );
+        assert!((p.x - x).abs() < 3e-7 && (p.y - y).abs() < 3e-7, "{u}: {p} instead of ({x}, {y})");
     }
 }
 
@@ -105,20 +74,14 @@ fn assert_direction(w: Vec3, hemisphere: bool) {
 fn heights_below(z: f64, pdf: impl Fn(f32) -> f32) -> f64 {
     let steps = 512;
     let each = (z + 1.0) / steps as f64;
-    (0..steps)
-        .map(|i| 2.0 * PI * pdf((-1.0 + (i as f64 + 0.5) * each) as f32) as f64 * each)
-        .sum()
+    (0..steps).map(|i| 2.0 * PI * pdf((-1.0 + (i as f64 + 0.5) * each) as f32) as f64 * each).sum()
 }
 
 #[test]
 fn cosine_hemispheres_have_the_stated_density() {
     points().for_each(|u| assert_direction(square_to_cosine_hemisphere(u), true));
     let heights = |w: Vec3| heights_below(w.z as f64, cosine_hemisphere_pdf);
-    assert_uniform(
-        points()
-            .map(square_to_cosine_hemisphere)
-            .map(|w| (heights(w), azimuth(w.x, w.y))),
-    );
+    assert_uniform(points().map(square_to_cosine_hemisphere).map(|w| (heights(w), azimuth(w.x, w.y))));
     assert!((heights_below(1.0, cosine_hemisphere_pdf) - 1.0).abs() < 1e-5);
     assert_eq!(cosine_hemisphere_pdf(-0.5), 0.0);
 }
@@ -127,26 +90,15 @@ fn cosine_hemispheres_have_the_stated_density() {
 fn uniform_hemispheres_have_the_stated_density() {
     points().for_each(|u| assert_direction(square_to_uniform_hemisphere(u), true));
     let heights = |w: Vec3| w.z as f64 * 2.0 * PI * uniform_hemisphere_pdf(0.5) as f64;
-    assert_uniform(
-        points()
-            .map(square_to_uniform_hemisphere)
-            .map(|w| (heights(w), azimuth(w.x, w.y))),
-    );
-    assert_eq!(
-        (uniform_hemisphere_pdf(0.0), uniform_hemisphere_pdf(-1.0)),
-        (0.0, 0.0)
-    );
+    assert_uniform(points().map(square_to_uniform_hemisphere).map(|w| (heights(w), azimuth(w.x, w.y))));
+    assert_eq!((uniform_hemisphere_pdf(0.0), uniform_hemisphere_pdf(-1.0)), (0.0, 0.0));
 }
 
 #[test]
 fn uniform_spheres_have_the_stated_density() {
     points().for_each(|u| assert_direction(square_to_uniform_sphere(u), false));
     let heights = |w: Vec3| heights_below(w.z as f64, |_| uniform_sphere_pdf());
-    assert_uniform(
-        points()
-            .map(square_to_uniform_sphere)
-            .map(|w| (heights(w), azimuth(w.x, w.y))),
-    );
+    assert_uniform(points().map(square_to_uniform_sphere).map(|w| (heights(w), azimuth(w.x, w.y))));
 }
 
 #[test]
@@ -177,10 +129,7 @@ proptest! {
 
 fn scene(filter: &Filter) -> SceneData {
     let baked = filter_table(filter);
-    let mut data = SceneData {
-        tables: vec![f32::NAN; 5],
-        ..SceneData::default()
-    };
+    let mut data = SceneData { tables: vec![f32::NAN; 5], ..SceneData::default() };
     data.header.filter_kind = baked.kind;
     data.header.filter_radius = baked.radius;
     data.header.filter_norm = baked.norm;
@@ -192,50 +141,26 @@ fn scene(filter: &Filter) -> SceneData {
 const FILTERS: [Filter; 8] = [
     Filter::Box { radius: 0.5 },
     Filter::Tent { radius: 1.0 },
-    Filter::Gaussian {
-        radius: 2.0,
-        sigma: 0.5,
-    },
-    Filter::Gaussian {
-        radius: 1.5,
-        sigma: 0.5,
-    },
-    Filter::Gaussian {
-        radius: 1.0,
-        sigma: 5.0,
-    },
-    Filter::Mitchell {
-        radius: 2.0,
-        b: 0.33333334,
-        c: 0.33333334,
-    },
-    Filter::Mitchell {
-        radius: 2.0,
-        b: 0.0,
-        c: 0.5,
-    },
-    Filter::Mitchell {
-        radius: 3.0,
-        b: 1.0,
-        c: 0.0,
-    },
+    Filter::Gaussian { radius: 2.0, sigma: 0.5 },
+    Filter::Gaussian { radius: 1.5, sigma: 0.5 },
+    Filter::Gaussian { radius: 1.0, sigma: 5.0 },
+    Filter::Mitchell { radius: 2.0, b: 0.33333334, c: 0.33333334 },
+    Filter::Mitchell { radius: 2.0, b: 0.0, c: 0.5 },
+    Filter::Mitchell { radius: 3.0, b: 1.0, c: 0.0 },
 ];
 
 /// The largest difference of densities, as a part of the peak, and the area between them.
 fn table_error(filter: &Filter) -> (f64, f64) {
     let data = scene(filter);
     let radius = data.header.filter_radius as f64;
-    let area: f64 = (0..20_000)
-        .map(|i| filter_value(filter, (i as f64 + 0.5) / 20_000.0 * radius))
-        .sum::<f64>()
+    let area: f64 = (0..20_000).map(|i| filter_value(filter, (i as f64 + 0.5) / 20_000.0 * radius)).sum::<f64>()
         * radius
         / 10_000.0;
     let (positions, signs) = data.tables[5..].split_at(FILTER_KNOTS as usize + 1);
     let (mut highest, mut between) = (0f64, 0f64);
     for (ends, &sign) in positions.windows(2).zip(signs) {
         let (low, width) = (ends[0] as f64, ends[1] as f64 - ends[0] as f64);
-        let density =
-            sign as f64 * (data.header.filter_norm as f64).sqrt() / (FILTER_KNOTS as f64 * width);
+        let density = sign as f64 * (data.header.filter_norm as f64).sqrt() / (FILTER_KNOTS as f64 * width);
         for i in 0..64 {
             let x = low + width * (i as f64 + 0.5) / 64.0;
             let error = (density - filter_value(filter, x) / area).abs();
@@ -255,10 +180,7 @@ fn tables_come_as_near_to_their_filters_as_stated() {
             Filter::Gaussian { .. } => (0.9, 0.9),
             _ => (0.06, 0.025),
         };
-        assert!(
-            highest < high_bound && between < area_bound,
-            "{filter:?}: {highest}, {between}"
-        );
+        assert!(highest < high_bound && between < area_bound, "{filter:?}: {highest}, {between}");
     }
 }
 
@@ -267,25 +189,10 @@ fn tables_are_symmetric_ascending_and_reach_their_radius() {
     for filter in &FILTERS[2..] {
         let baked = filter_table(filter);
         let (positions, signs) = baked.table.split_at(FILTER_KNOTS as usize + 1);
-        assert_eq!(
-            (baked.kind, signs.len()),
-            (FILTER_TABLE, FILTER_KNOTS as usize)
-        );
-        assert!(
-            positions.windows(2).all(|ends| ends[0] < ends[1]),
-            "{filter:?}"
-        );
-        assert!(
-            positions
-                .iter()
-                .zip(positions.iter().rev())
-                .all(|(a, b)| *a == -*b),
-            "{filter:?}"
-        );
-        assert!(
-            signs.iter().zip(signs.iter().rev()).all(|(a, b)| a == b),
-            "{filter:?}"
-        );
+        assert_eq!((baked.kind, signs.len()), (FILTER_TABLE, FILTER_KNOTS as usize));
+        assert!(positions.windows(2).all(|ends| ends[0] < ends[1]), "{filter:?}");
+        assert!(positions.iter().zip(positions.iter().rev()).all(|(a, b)| *a == -*b), "{filter:?}");
+        assert!(signs.iter().zip(signs.iter().rev()).all(|(a, b)| a == b), "{filter:?}");
         assert_eq!(positions[FILTER_KNOTS as usize], baked.radius);
     }
     for (filter, kind) in [(&FILTERS[0], FILTER_BOX), (&FILTERS[1], FILTER_TENT)] {
@@ -296,19 +203,10 @@ fn tables_are_symmetric_ascending_and_reach_their_radius() {
 
 #[test]
 fn negative_lobes_have_negative_signs_and_raise_the_norm() {
-    for (filter, norm) in [
-        (&FILTERS[2], 1.0),
-        (&FILTERS[7], 1.0),
-        (&FILTERS[5], 1.1448),
-        (&FILTERS[6], 1.3611),
-    ] {
+    for (filter, norm) in [(&FILTERS[2], 1.0), (&FILTERS[7], 1.0), (&FILTERS[5], 1.1448), (&FILTERS[6], 1.3611)] {
         let baked = filter_table(filter);
         let signs = &baked.table[FILTER_KNOTS as usize + 1..];
-        assert!(
-            (baked.norm - norm).abs() < 1e-3,
-            "{filter:?}: {}",
-            baked.norm
-        );
+        assert!((baked.norm - norm).abs() < 1e-3, "{filter:?}: {}", baked.norm);
         assert_eq!(signs[0], if norm > 1.0 { -1.0 } else { 1.0 }, "{filter:?}");
         assert_eq!(signs[FILTER_KNOTS as usize / 2], 1.0);
     }
@@ -323,10 +221,7 @@ fn weighted_samples_reproduce_the_filter_in_both_axes() {
         let (bins, side) = (32usize, 1024);
         let (mut columns, mut rows, mut mean) = (vec![0.0; bins], vec![0.0; bins], 0.0);
         for i in 0..side * side {
-            let u = Vec2::new(
-                ((i % side) as f32 + 0.5) / side as f32,
-                ((i / side) as f32 + 0.5) / side as f32,
-            );
+            let u = Vec2::new(((i % side) as f32 + 0.5) / side as f32, ((i / side) as f32 + 0.5) / side as f32);
             let sample = sample_filter(&data.view(), u);
             let weight = sample.weight as f64 / (side * side) as f64;
             let bin = |x: f32| ((x as f64 / radius + 1.0) * 0.5 * bins as f64) as usize;
@@ -337,28 +232,16 @@ fn weighted_samples_reproduce_the_filter_in_both_axes() {
         assert!((mean - 1.0).abs() < 1e-6, "{filter:?}: mean weight {mean}");
         let steps = 1000;
         let mass = |bin: usize| {
-            let at = |i: usize| {
-                -1.0 + 2.0 * (bin as f64 + (i as f64 + 0.5) / steps as f64) / bins as f64
-            };
-            (0..steps)
-                .map(|i| filter_value(filter, radius * at(i)))
-                .sum::<f64>()
+            let at = |i: usize| -1.0 + 2.0 * (bin as f64 + (i as f64 + 0.5) / steps as f64) / bins as f64;
+            (0..steps).map(|i| filter_value(filter, radius * at(i))).sum::<f64>()
         };
         let total: f64 = (0..bins).map(mass).sum();
         for bin in 0..bins {
             let want = mass(bin) / total;
             // A bin may cut an interval, of which each holds 1/256, in two.
             let bound = 0.003;
-            assert!(
-                (columns[bin] - want).abs() < bound,
-                "{filter:?} column {bin}: {} for {want}",
-                columns[bin]
-            );
-            assert!(
-                (rows[bin] - want).abs() < bound,
-                "{filter:?} row {bin}: {} for {want}",
-                rows[bin]
-            );
+            assert!((columns[bin] - want).abs() < bound, "{filter:?} column {bin}: {} for {want}", columns[bin]);
+            assert!((rows[bin] - want).abs() < bound, "{filter:?} row {bin}: {} for {want}", rows[bin]);
         }
     }
 }
@@ -369,14 +252,8 @@ fn filter_samples_stay_within_the_radius() {
         let data = scene(filter);
         for u in points() {
             let offset = sample_filter(&data.view(), u).offset;
-            assert!(
-                offset.abs().max_element() <= data.header.filter_radius,
-                "{filter:?}: {offset}"
-            );
+            assert!(offset.abs().max_element() <= data.header.filter_radius, "{filter:?}: {offset}");
         }
     }
-    assert_eq!(
-        (sample_tent(0.0), sample_tent(0.5), sample_tent(0.125)),
-        (-1.0, 0.0, -0.5)
-    );
+    assert_eq!((sample_tent(0.0), sample_tent(0.5), sample_tent(0.125)), (-1.0, 0.0, -0.5));
 }

@@ -75,7 +75,8 @@ impl SceneData {
             &mut header.first_table,
         ];
         first.into_iter().for_each(|offset| *offset = 0);
-        let instances: Vec<Instance> = self.instances.iter().map(|instance| Instance { root: 0, ..*instance }).collect();
+        let instances: Vec<Instance> =
+            self.instances.iter().map(|instance| Instance { root: 0, ..*instance }).collect();
         let mut hasher = blake3::Hasher::new();
         hasher.update(b"gonio scene 1");
         for bytes in [

@@ -41,19 +41,9 @@ pub fn filter_value(filter: &Filter, x: f64) -> f64 {
 fn mitchell(x: f64, b: f64, c: f64) -> f64 {
     let cubic = |k3: f64, k2: f64, k1: f64, k0: f64| (((k3 * x + k2) * x + k1) * x + k0) / 6.0;
     if x < 1.0 {
-        cubic(
-            12.0 - 9.0 * b - 6.0 * c,
-            -18.0 + 12.0 * b + 6.0 * c,
-            0.0,
-            6.0 - 2.0 * b,
-        )
+        cubic(12.0 - 9.0 * b - 6.0 * c, -18.0 + 12.0 * b + 6.0 * c, 0.0, 6.0 - 2.0 * b)
     } else if x < 2.0 {
-        cubic(
-            -b - 6.0 * c,
-            6.0 * b + 30.0 * c,
-            -12.0 * b - 48.0 * c,
-            8.0 * b + 24.0 * c,
-        )
+        cubic(-b - 6.0 * c, 6.0 * b + 30.0 * c, -12.0 * b - 48.0 * c, 8.0 * b + 24.0 * c)
     } else {
         0.0
     }
@@ -62,21 +52,9 @@ fn mitchell(x: f64, b: f64, c: f64) -> f64 {
 /// Prepares a filter for sampling. Box and tent need no table. Radius and sigma must be positive.
 pub fn filter_table(filter: &Filter) -> FilterTable {
     match *filter {
-        Filter::Box { radius } => FilterTable {
-            kind: FILTER_BOX,
-            radius,
-            norm: 1.0,
-            table: Vec::new(),
-        },
-        Filter::Tent { radius } => FilterTable {
-            kind: FILTER_TENT,
-            radius,
-            norm: 1.0,
-            table: Vec::new(),
-        },
-        Filter::Gaussian { radius, .. } | Filter::Mitchell { radius, .. } => {
-            tabulate(filter, radius)
-        }
+        Filter::Box { radius } => FilterTable { kind: FILTER_BOX, radius, norm: 1.0, table: Vec::new() },
+        Filter::Tent { radius } => FilterTable { kind: FILTER_TENT, radius, norm: 1.0, table: Vec::new() },
+        Filter::Gaussian { radius, .. } | Filter::Mitchell { radius, .. } => tabulate(filter, radius),
     }
 }
 
@@ -105,18 +83,10 @@ impl HalfIntegral {
 
     /// The place, in steps, where the integral of |filter| reaches `target`, and the integral of the filter up to there.
     fn find(&self, target: f64) -> (f64, f64) {
-        let after = self
-            .size
-            .partition_point(|&size| size < target)
-            .clamp(1, STEPS);
+        let after = self.size.partition_point(|&size| size < target).clamp(1, STEPS);
         let step = self.size[after] - self.size[after - 1];
-        let fraction = if step > 0.0 {
-            (target - self.size[after - 1]) / step
-        } else {
-            0.0
-        };
-        let signed =
-            self.signed[after - 1] + fraction * (self.signed[after] - self.signed[after - 1]);
+        let fraction = if step > 0.0 { (target - self.size[after - 1]) / step } else { 0.0 };
+        let signed = self.signed[after - 1] + fraction * (self.signed[after] - self.signed[after - 1]);
         ((after - 1) as f64 + fraction, signed)
     }
 }
@@ -132,11 +102,7 @@ fn tabulate(filter: &Filter, radius: f32) -> FilterTable {
     let mut before = 0.0;
     for k in 1..=half {
         let (place, signed) = integral.find(total * k as f64 / half as f64);
-        let position = if k == half {
-            radius
-        } else {
-            (radius as f64 * place / STEPS as f64) as f32
-        };
+        let position = if k == half { radius } else { (radius as f64 * place / STEPS as f64) as f32 };
         let sign = ((signed - before) * half as f64 / total).clamp(-1.0, 1.0) as f32;
         before = signed;
         (positions[half + k], positions[half - k]) = (position, -position);
@@ -146,10 +112,5 @@ fn tabulate(filter: &Filter, radius: f32) -> FilterTable {
     // From the rounded signs, so that weights average to 1.
     let mean: f64 = signs.iter().map(|&sign| sign as f64).sum::<f64>() / signs.len() as f64;
     positions.extend(signs);
-    FilterTable {
-        kind: FILTER_TABLE,
-        radius,
-        norm: (1.0 / (mean * mean)) as f32,
-        table: positions,
-    }
+    FilterTable { kind: FILTER_TABLE, radius, norm: (1.0 / (mean * mean)) as f32, table: positions }
 }

@@ -46,16 +46,11 @@ fn limit(text: &str) -> Result<f64, String> {
 pub fn run(args: &CompareArgs) -> Result<ExitCode> {
     let stdin = Path::new("-");
     if args.reference == stdin && args.test == stdin {
-        return Err(
-            FilmError::Usage("only one of the two pictures can be standard input".into()).into(),
-        );
+        return Err(FilmError::Usage("only one of the two pictures can be standard input".into()).into());
     }
     let heatmap = args.heatmap.as_deref().map(open_heatmap).transpose()?;
     if !args.json && heatmap.as_ref().is_some_and(OutputFile::is_stdout) {
-        return Err(FilmError::Usage(
-            "--heatmap - and the measures cannot both go to standard output".into(),
-        )
-        .into());
+        return Err(FilmError::Usage("--heatmap - and the measures cannot both go to standard output".into()).into());
     }
     let reference = read_picture(&args.reference)?;
     let test = read_picture(&args.test)?;
@@ -66,28 +61,15 @@ pub fn run(args: &CompareArgs) -> Result<ExitCode> {
         file.commit()?;
     }
     let excesses = excesses(args, &metrics);
-    let text = if args.json {
-        json(&metrics, &excesses)?
-    } else {
-        table(&metrics, &excesses)
-    };
-    std::io::stdout()
-        .write_all(text.as_bytes())
-        .context("cannot write standard output")?;
-    Ok(if excesses.is_empty() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    })
+    let text = if args.json { json(&metrics, &excesses)? } else { table(&metrics, &excesses) };
+    std::io::stdout().write_all(text.as_bytes()).context("cannot write standard output")?;
+    Ok(if excesses.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 fn open_heatmap(path: &Path) -> Result<OutputFile, FilmError> {
     match write::Format::of(path)? {
         write::Format::Png => OutputFile::open(path),
-        _ => Err(FilmError::Usage(format!(
-            "{}: a heat map is a .png file",
-            path.display()
-        ))),
+        _ => Err(FilmError::Usage(format!("{}: a heat map is a .png file", path.display()))),
     }
 }
 
@@ -103,10 +85,7 @@ pub fn excesses(args: &CompareArgs, metrics: &Metrics) -> Vec<String> {
         return found;
     }
     if metrics.nan_mismatches > 0 {
-        found.push(format!(
-            "{} values are not a number in one picture only",
-            metrics.nan_mismatches
-        ));
+        found.push(format!("{} values are not a number in one picture only", metrics.nan_mismatches));
     }
     if let Some(max) = args.max_ulp.filter(|max| metrics.max_ulp > *max) {
         found.push(format!("max ULP {} is above {max}", metrics.max_ulp));
@@ -128,11 +107,7 @@ fn json(metrics: &Metrics, excesses: &[String]) -> Result<String> {
         accepted: bool,
         excesses: &'a [String],
     }
-    let report = Report {
-        metrics,
-        accepted: excesses.is_empty(),
-        excesses,
-    };
+    let report = Report { metrics, accepted: excesses.is_empty(), excesses };
     Ok(serde_json::to_string_pretty(&report)? + "\n")
 }
 
@@ -143,18 +118,10 @@ fn table(metrics: &Metrics, excesses: &[String]) -> String {
         Step::Sixteen => "16-bit codes",
     };
     let pixels = u64::from(metrics.width) * u64::from(metrics.height);
-    let at = metrics
-        .max_abs_at
-        .map(|[x, y]| format!(" at pixel {x},{y}"))
-        .unwrap_or_default();
-    let psnr = metrics
-        .psnr_db
-        .map_or("equal".into(), |psnr| format!("{psnr:.2} dB"));
+    let at = metrics.max_abs_at.map(|[x, y]| format!(" at pixel {x},{y}")).unwrap_or_default();
+    let psnr = metrics.psnr_db.map_or("equal".into(), |psnr| format!("{psnr:.2} dB"));
     let mut lines = vec![
-        format!(
-            "pixels     {} of {pixels} differ ({}x{})",
-            metrics.differing_pixels, metrics.width, metrics.height
-        ),
+        format!("pixels     {} of {pixels} differ ({}x{})", metrics.differing_pixels, metrics.width, metrics.height),
         format!("max ULP    {} {step}", metrics.max_ulp),
         format!("max error  {:.6e}{at}", metrics.max_abs),
         format!("MSE        {:.6e}", metrics.mse),
@@ -164,16 +131,10 @@ fn table(metrics: &Metrics, excesses: &[String]) -> String {
         format!("FLIP       {:.6}", metrics.flip),
     ];
     if metrics.nan_mismatches > 0 {
-        lines.push(format!(
-            "NaN        {} values in one picture only",
-            metrics.nan_mismatches
-        ));
+        lines.push(format!("NaN        {} values in one picture only", metrics.nan_mismatches));
     }
     if let Some(same) = metrics.same_film {
-        lines.push(format!(
-            "film hash  {}",
-            if same { "equal" } else { "different" }
-        ));
+        lines.push(format!("film hash  {}", if same { "equal" } else { "different" }));
     }
     lines.push(match excesses {
         [] => "accepted".into(),

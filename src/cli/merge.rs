@@ -26,13 +26,7 @@ pub struct MergeArgs {
 
 /// Runs the subcommand.
 pub fn run(args: &MergeArgs) -> Result<ExitCode> {
-    if args
-        .films
-        .iter()
-        .filter(|path| path.as_path() == Path::new("-"))
-        .count()
-        > 1
-    {
+    if args.films.iter().filter(|path| path.as_path() == Path::new("-")).count() > 1 {
         return Err(FilmError::Usage("only one film can be standard input".into()).into());
     }
     let format = args.picture.format_of(&args.output)?;
@@ -42,15 +36,10 @@ pub fn run(args: &MergeArgs) -> Result<ExitCode> {
     let mut film = read_film(first)?;
     for path in paths {
         let other = read_film(path)?;
-        film.merge(&other)
-            .map_err(|error| FilmError::bad(path, format!("cannot be merged: {error}")))?;
+        film.merge(&other).map_err(|error| FilmError::bad(path, format!("cannot be merged: {error}")))?;
         if other.spec().version != film.spec().version {
             let (here, there) = (&film.spec().version, &other.spec().version);
-            log::warn!(
-                "{}: made by gonio {there}, {} by gonio {here}",
-                path.display(),
-                first.display()
-            );
+            log::warn!("{}: made by gonio {there}, {} by gonio {here}", path.display(), first.display());
         }
     }
     let layers = if film.spec().aovs { Aov::ALL.map(|(_, aov)| aov).to_vec() } else { Vec::new() };

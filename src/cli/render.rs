@@ -160,7 +160,8 @@ fn render_passes(
     let bar = progress::bar(pixels * u64::from(samples.end - samples.start), show_progress);
     let abort = AtomicBool::new(false);
     let watch = Watch { abort: &abort, advance: &|done| bar.inc(done) };
-    let mut outcome = Outcome { counters: Counters::default(), render_time: Duration::ZERO, passes: 0, interrupted: None };
+    let mut outcome =
+        Outcome { counters: Counters::default(), render_time: Duration::ZERO, passes: 0, interrupted: None };
     let mut next = samples.start;
     let mut pass_samples = 1;
     while next < samples.end {
@@ -174,7 +175,8 @@ fn render_passes(
             break;
         }
         // Passes of about half a second: long enough to fill a device, short enough to stop at.
-        pass_samples = (f64::from(end - next) * 0.5 / pass_time.as_secs_f64().max(1e-4)).clamp(1.0, f64::from(4 * (end - next))) as u32;
+        pass_samples = (f64::from(end - next) * 0.5 / pass_time.as_secs_f64().max(1e-4))
+            .clamp(1.0, f64::from(4 * (end - next))) as u32;
         next = end;
     }
     bar.finish_and_clear();
@@ -256,5 +258,9 @@ pub(super) fn print_bounce(out: &mut impl Write, bounce: &Bounce) -> std::io::Re
     if hit.instance == crate::layout::INVALID {
         return writeln!(out, "  leaves the scene");
     }
-    writeln!(out, "  hit        t {:?}, instance {}, primitive {}, b {:?} {:?}", hit.t, hit.instance, hit.primitive, hit.b1, hit.b2)
+    writeln!(
+        out,
+        "  hit        t {:?}, instance {}, primitive {}, b {:?} {:?}",
+        hit.t, hit.instance, hit.primitive, hit.b1, hit.b2
+    )
 }

@@ -25,7 +25,9 @@ impl FromStr for Size {
     fn from_str(text: &str) -> Result<Self, String> {
         let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
         match parsed {
-            Some((width, height)) if (1..=65_535).contains(&width) && (1..=65_535).contains(&height) => Ok(Self { width, height }),
+            Some((width, height)) if (1..=65_535).contains(&width) && (1..=65_535).contains(&height) => {
+                Ok(Self { width, height })
+            }
             _ => Err("expected WIDTHxHEIGHT, each 1 to 65535, as in 1280x720".to_owned()),
         }
     }
@@ -61,7 +63,9 @@ impl FromStr for Pixel {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let parsed = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
-        parsed.map(|(x, y)| Self { x, y }).ok_or_else(|| "expected X,Y in pixels, from the upper left corner".to_owned())
+        parsed
+            .map(|(x, y)| Self { x, y })
+            .ok_or_else(|| "expected X,Y in pixels, from the upper left corner".to_owned())
     }
 }
 
@@ -225,7 +229,9 @@ pub fn film_of(scene: &Scene, data: &SceneData, crop: Rect) -> Film {
         unit_exponent: scene.film.unit_exponent,
         seed: scene.settings.seed,
         scene_digest: data.digest(),
-        scene_name: PathBuf::from(&scene.name).file_name().map_or_else(|| scene.name.clone(), |name| name.to_string_lossy().into_owned()),
+        scene_name: PathBuf::from(&scene.name)
+            .file_name()
+            .map_or_else(|| scene.name.clone(), |name| name.to_string_lossy().into_owned()),
         integrator: integrator.to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         transparent: data.header.hide_background != 0,

@@ -16,18 +16,13 @@ pub struct Display {
 }
 
 /// Names of the tone curves, as scene files and flags write them.
-pub const TONEMAP_NAMES: [(&str, ToneMap); 3] = [
-    ("clamp", ToneMap::Clamp),
-    ("normalise", ToneMap::Normalise),
-    ("reinhard", ToneMap::Reinhard),
-];
+pub const TONEMAP_NAMES: [(&str, ToneMap); 3] =
+    [("clamp", ToneMap::Clamp), ("normalise", ToneMap::Normalise), ("reinhard", ToneMap::Reinhard)];
 
 /// The curve of that name; an error names what is allowed.
 pub fn tonemap_from_name(name: &str) -> Result<ToneMap, String> {
     let named = TONEMAP_NAMES.iter().find(|(n, _)| *n == name);
-    named
-        .map(|(_, curve)| *curve)
-        .ok_or_else(|| "allowed: clamp, normalise, reinhard".into())
+    named.map(|(_, curve)| *curve).ok_or_else(|| "allowed: clamp, normalise, reinhard".into())
 }
 
 /// The name of a curve.
@@ -42,21 +37,13 @@ pub fn tonemap_name(tonemap: ToneMap) -> &'static str {
 /// Linear light, 0 to 1, as sRGB, 0 to 1.
 /// Source: IEC 61966-2-1:1999, 5.2.
 pub fn srgb_encode(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
-    }
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 }
 }
 
 /// sRGB, 0 to 1, as linear light, 0 to 1; inverse of `srgb_encode`.
 /// Source: IEC 61966-2-1:1999, 5.3.
 pub fn srgb_decode(encoded: f64) -> f64 {
-    if encoded <= 0.040_45 {
-        encoded / 12.92
-    } else {
-        libm::pow((encoded + 0.055) / 1.055, 2.4)
-    }
+    if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
 /// Nearest integer of 0..=`max` to a value of 0 to 1 times `max`, halves up. Below 0 and NaN give 0, above 1 `max`.
@@ -74,26 +61,11 @@ fn luminance(rgb: [f64; 3]) -> f64 {
 /// number and negative values (a filter's negative lobes) become 0, infinite ones finite.
 fn visible(pixel: [f32; 4], transparent: bool) -> ([f64; 3], f64) {
     let finite = |v: f64| v.max(0.0).min(f64::from(f32::MAX));
-    let alpha = if transparent {
-        finite(f64::from(pixel[3])).min(1.0)
-    } else {
-        1.0
-    };
+    let alpha = if transparent { finite(f64::from(pixel[3])).min(1.0) } else { 1.0 };
     let unpremultiply = |v: f32| {
-        if alpha > 0.0 {
-            finite(f64::from(v) / alpha)
-        } else {
-            0.0
-        }
+        if alpha > 0.0 { finite(f64::from(v) / alpha) } else { 0.0 }
     };
-    (
-        [
-            unpremultiply(pixel[0]),
-            unpremultiply(pixel[1]),
-            unpremultiply(pixel[2]),
-        ],
-        alpha,
-    )
+    ([unpremultiply(pixel[0]), unpremultiply(pixel[1]), unpremultiply(pixel[2])], alpha)
 }
 
 /// The factor on all light before the curve: exposure, and for `Normalise` the image's maximum, which then becomes
@@ -103,18 +75,9 @@ fn gain(image: &Image, display: &Display) -> f64 {
     if display.tonemap != ToneMap::Normalise {
         return exposure;
     }
-    let largest = |p: &[f32; 4]| {
-        visible(*p, display.transparent)
-            .0
-            .into_iter()
-            .fold(0.0, f64::max)
-    };
+    let largest = |p: &[f32; 4]| visible(*p, display.transparent).0.into_iter().fold(0.0, f64::max);
     let maximum = image.pixels.iter().map(largest).fold(0.0, f64::max);
-    if maximum > 0.0 {
-        exposure / maximum
-    } else {
-        exposure
-    }
+    if maximum > 0.0 { exposure / maximum } else { exposure }
 }
 
 /// One pixel after exposure and curve: linear light of the display and alpha, each 0 to 1.
@@ -135,11 +98,7 @@ fn tone_map_pixel(pixel: [f32; 4], gain: f64, display: &Display) -> [f64; 4] {
 /// Source: Reinhard, Stark, Shirley, Ferwerda 2002, Photographic Tone Reproduction for Digital Images, equation 3.
 pub fn tone_map(image: &Image, display: &Display) -> Vec<[f64; 4]> {
     let gain = gain(image, display);
-    image
-        .pixels
-        .par_iter()
-        .map(|&pixel| tone_map_pixel(pixel, gain, display))
-        .collect()
+    image.pixels.par_iter().map(|&pixel| tone_map_pixel(pixel, gain, display)).collect()
 }
 
 /// The displayed picture in integers of 0..=`max` (255 or 65,535): sRGB, and linear alpha where transparent, else `max`.

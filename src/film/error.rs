@@ -33,62 +33,34 @@ impl FilmError {
     }
 
     pub(crate) fn bad(file: &Path, message: impl Into<String>) -> Self {
-        Self::Bad {
-            file: input_name(file),
-            message: message.into(),
-        }
+        Self::Bad { file: input_name(file), message: message.into() }
     }
 
     pub(crate) fn read(file: &Path, source: io::Error) -> Self {
-        Self::Io {
-            action: "read",
-            file: input_name(file),
-            source,
-        }
+        Self::Io { action: "read", file: input_name(file), source }
     }
 
     pub(crate) fn write(file: &Path, source: io::Error) -> Self {
-        Self::Io {
-            action: "write",
-            file: output_name(file),
-            source,
-        }
+        Self::Io { action: "write", file: output_name(file), source }
     }
 }
 
 /// `-` is a stream in messages, not a file.
 fn input_name(file: &Path) -> String {
-    if file == Path::new("-") {
-        "standard input".into()
-    } else {
-        file.display().to_string()
-    }
+    if file == Path::new("-") { "standard input".into() } else { file.display().to_string() }
 }
 
 fn output_name(file: &Path) -> String {
-    if file == Path::new("-") {
-        "standard output".into()
-    } else {
-        file.display().to_string()
-    }
+    if file == Path::new("-") { "standard output".into() } else { file.display().to_string() }
 }
 
 /// Why two films cannot become one. Nothing was added when this is returned.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MergeError {
     #[error("the films differ in {what}: {left} and {right}")]
-    Differs {
-        what: &'static str,
-        left: String,
-        right: String,
-    },
+    Differs { what: &'static str, left: String, right: String },
     #[error("both films hold the samples {start}..{end} (they hold {left} and {right})")]
-    Overlap {
-        start: u32,
-        end: u32,
-        left: String,
-        right: String,
-    },
+    Overlap { start: u32, end: u32, left: String, right: String },
     #[error("the films would hold {total} samples a pixel together; at most {max} are allowed", max = super::MAX_SAMPLES)]
     TooMany { total: u64 },
 }

@@ -68,12 +68,7 @@ impl Header {
             height: spec.height,
             crop: spec.crop,
             unit_exponent: spec.unit_exponent,
-            samples: film
-                .samples
-                .as_slice()
-                .iter()
-                .map(|r| [r.start, r.end])
-                .collect(),
+            samples: film.samples.as_slice().iter().map(|r| [r.start, r.end]).collect(),
             nan_count: film.nan_count,
             clamped_count: film.clamped_count,
             transparent: spec.transparent,
@@ -87,46 +82,26 @@ impl Header {
     fn check(self) -> Result<(FilmSpec, SampleRanges, [u64; 2]), String> {
         let size = 1..=65_535;
         if !size.contains(&self.width) || !size.contains(&self.height) {
-            return Err(format!(
-                "the frame is {}x{}; allowed is 1 to 65535 each",
-                self.width, self.height
-            ));
+            return Err(format!("the frame is {}x{}; allowed is 1 to 65535 each", self.width, self.height));
         }
         if self.crop.area() == 0 || !Rect::whole(self.width, self.height).contains(&self.crop) {
-            return Err(format!(
-                "the crop {} is not inside the frame {}x{}",
-                self.crop, self.width, self.height
-            ));
+            return Err(format!("the crop {} is not inside the frame {}x{}", self.crop, self.width, self.height));
         }
         if !(-100..=100).contains(&self.unit_exponent) {
-            return Err(format!(
-                "unit_exponent is {}; allowed is -100 to 100",
-                self.unit_exponent
-            ));
+            return Err(format!("unit_exponent is {}; allowed is -100 to 100", self.unit_exponent));
         }
         if !self.exposure.is_finite() {
             return Err("exposure is not a finite number".into());
         }
-        if let Some([start, end]) = self
-            .samples
-            .iter()
-            .find(|[start, end]| start >= end || *end > MAX_SAMPLES)
-        {
-            return Err(format!(
-                "sample range {start}..{end} is not inside 0..{MAX_SAMPLES}"
-            ));
+        if let Some([start, end]) = self.samples.iter().find(|[start, end]| start >= end || *end > MAX_SAMPLES) {
+            return Err(format!("sample range {start}..{end} is not inside 0..{MAX_SAMPLES}"));
         }
         let ranges = SampleRanges::new(self.samples.iter().map(|[start, end]| *start..*end));
         let ranges = ranges.map_err(|_| "sample ranges overlap".to_string())?;
         let digest = blake3::Hash::from_hex(&self.scene_digest);
-        let digest = digest.map_err(|_| {
-            format!(
-                "scene_digest is {:?}, not 64 hexadecimal digits",
-                self.scene_digest
-            )
-        })?;
-        let tonemap = tonemap_from_name(&self.tonemap)
-            .map_err(|e| format!("tonemap is {:?}; {e}", self.tonemap))?;
+        let digest =
+            digest.map_err(|_| format!("scene_digest is {:?}, not 64 hexadecimal digits", self.scene_digest))?;
+        let tonemap = tonemap_from_name(&self.tonemap).map_err(|e| format!("tonemap is {:?}; {e}", self.tonemap))?;
         let spec = FilmSpec {
             width: self.width,
             height: self.height,
@@ -161,10 +136,7 @@ impl Hashing<'_> {
 
 /// Writes the film.
 pub fn write(film: &Film, out: &mut dyn Write) -> io::Result<()> {
-    let mut out = Hashing {
-        out,
-        hasher: blake3::Hasher::new(),
-    };
+    let mut out = Hashing { out, hasher: blake3::Hasher::new() };
     let header = serde_json::to_vec(&Header::of(film)).map_err(io::Error::other)?;
     out.put(&MAGIC)?;
     out.put(&VERSION.to_le_bytes())?;
@@ -179,12 +151,7 @@ pub fn write(film: &Film, out: &mut dyn Write) -> io::Result<()> {
     for pixels in film.aovs.iter().flat_map(|aovs| aovs.chunks(CHUNK_PIXELS)) {
         bytes.clear();
         for aov in pixels {
-            bytes.extend(
-                aov.normal
-                    .iter()
-                    .chain(&aov.albedo)
-                    .flat_map(|lane| lane.to_le_bytes()),
-            );
+            bytes.extend(aov.normal.iter().chain(&aov.albedo).flat_map(|lane| lane.to_le_bytes()));
             bytes.extend(aov.depth.to_bits().to_le_bytes());
             bytes.extend(aov.object.to_le_bytes());
             bytes.extend(aov.material.to_le_bytes());
@@ -216,9 +183,7 @@ impl Input<'_> {
             match self.source.read(&mut bytes[filled..]) {
                 Ok(0) => {
                     let end = self.position + filled as u64;
-                    return Err(self.bad(format!(
-                        "truncated film: it ends after {end} bytes, inside the {what}"
-                    )));
+                    return Err(self.bad(format!("truncated film: it ends after {end} bytes, inside the {what}")));
                 }
                 Ok(n) => filled += n,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
@@ -277,12 +242,7 @@ fn aov_record(bytes: &[u8]) -> AovSums {
 
 /// Reads a film to the end of `source`; `file` is its name in messages, `-` for standard input.
 pub fn read(file: &Path, source: &mut dyn Read) -> Result<Film, FilmError> {
-    let mut input = Input {
-        file,
-        source,
-        hasher: blake3::Hasher::new(),
-        position: 0,
-    };
+    let mut input = Input { file, source, hasher: blake3::Hasher::new(), position: 0 };
     let mut magic = [0; 8];
     input.take(&mut magic, "magic")?;
     if magic != MAGIC {
@@ -290,33 +250,23 @@ pub fn read(file: &Path, source: &mut dyn Read) -> Result<Film, FilmError> {
     }
     let version = input.word("version")?;
     if version > VERSION {
-        return Err(input.bad(format!(
-            "film format {version} is newer than this program's, {VERSION}"
-        )));
+        return Err(input.bad(format!("film format {version} is newer than this program's, {VERSION}")));
     }
     if version != VERSION {
-        return Err(input.bad(format!(
-            "film format {version} does not exist; this program reads {VERSION}"
-        )));
+        return Err(input.bad(format!("film format {version} does not exist; this program reads {VERSION}")));
     }
     let length = input.word("header length")?;
     if length > MAX_HEADER {
-        return Err(input.bad(format!(
-            "the header claims {length} bytes; at most {MAX_HEADER} are allowed"
-        )));
+        return Err(input.bad(format!("the header claims {length} bytes; at most {MAX_HEADER} are allowed")));
     }
     let mut header = vec![0; length as usize];
     input.take(&mut header, "header")?;
-    let header: Header =
-        serde_json::from_slice(&header).map_err(|e| input.bad(format!("film header: {e}")))?;
-    let (spec, samples, [nan_count, clamped_count]) = header
-        .check()
-        .map_err(|e| input.bad(format!("film header: {e}")))?;
+    let header: Header = serde_json::from_slice(&header).map_err(|e| input.bad(format!("film header: {e}")))?;
+    let (spec, samples, [nan_count, clamped_count]) =
+        header.check().map_err(|e| input.bad(format!("film header: {e}")))?;
 
     let area = spec.crop.area();
-    let sums = input.records(area, SUM_BYTES, "sums", |bytes| {
-        std::array::from_fn(|i| lane(bytes, i))
-    })?;
+    let sums = input.records(area, SUM_BYTES, "sums", |bytes| std::array::from_fn(|i| lane(bytes, i)))?;
     let aovs = match spec.aovs {
         true => Some(input.records(area, AOV_BYTES, "auxiliary values", aov_record)?),
         false => None,
@@ -331,14 +281,7 @@ pub fn read(file: &Path, source: &mut dyn Read) -> Result<Film, FilmError> {
     if input.take(&mut rest, "rest").is_ok() {
         return Err(input.bad("bytes follow the end of the film"));
     }
-    let film = Film {
-        spec,
-        sums,
-        aovs,
-        samples,
-        nan_count,
-        clamped_count,
-    };
+    let film = Film { spec, sums, aovs, samples, nan_count, clamped_count };
     film.check_bounds().map_err(|e| input.bad(e))?;
     Ok(film)
 }
@@ -359,14 +302,10 @@ impl Film {
         }
         // A contribution is clamped at twice what a sample may hold, and auxiliary values are not clamped again.
         let aovs = self.aovs.iter().flatten();
-        if let Some(i) = aovs
-            .into_iter()
-            .position(|aov| !within(&aov.normal, 2 * bound) || !within(&aov.albedo, 2 * bound))
+        if let Some(i) =
+            aovs.into_iter().position(|aov| !within(&aov.normal, 2 * bound) || !within(&aov.albedo, 2 * bound))
         {
-            return Err(format!(
-                "auxiliary sums of pixel {:?} of the crop are out of range",
-                place(i)
-            ));
+            return Err(format!("auxiliary sums of pixel {:?} of the crop are out of range", place(i)));
         }
         Ok(())
     }

@@ -65,19 +65,10 @@ impl FlipMap {
     pub fn new(reference: &Image, test: &Image) -> Self {
         let rgb8 = |image: &Image| {
             let codes = encode(image, &PLAIN, 255);
-            let bytes: Vec<u8> = codes
-                .iter()
-                .flat_map(|[r, g, b, _]| [*r as u8, *g as u8, *b as u8])
-                .collect();
+            let bytes: Vec<u8> = codes.iter().flat_map(|[r, g, b, _]| [*r as u8, *g as u8, *b as u8]).collect();
             nv_flip::FlipImageRgb8::with_data(image.width, image.height, &bytes)
         };
-        Self {
-            map: nv_flip::flip(
-                rgb8(reference),
-                rgb8(test),
-                nv_flip::DEFAULT_PIXELS_PER_DEGREE,
-            ),
-        }
+        Self { map: nv_flip::flip(rgb8(reference), rgb8(test), nv_flip::DEFAULT_PIXELS_PER_DEGREE) }
     }
 
     pub fn mean(&self) -> f64 {
@@ -92,22 +83,14 @@ impl FlipMap {
 }
 
 /// Linear light as it is, clamped.
-const PLAIN: Display = Display {
-    tonemap: ToneMap::Clamp,
-    exposure: 0.0,
-    transparent: false,
-};
+const PLAIN: Display = Display { tonemap: ToneMap::Clamp, exposure: 0.0, transparent: false };
 
 /// Number of f32 numbers from `a` to `b`; 0 for equal ones, for +0 and -0, and for two NaNs; none if one is a NaN.
 pub fn ulp_distance(a: f32, b: f32) -> Option<u64> {
     // Bits in the order of the numbers, both zeros at 0.
     let ordered = |v: f32| {
         let magnitude = i64::from(v.to_bits() & 0x7fff_ffff);
-        if v.is_sign_negative() {
-            -magnitude
-        } else {
-            magnitude
-        }
+        if v.is_sign_negative() { -magnitude } else { magnitude }
     };
     match (a.is_nan(), b.is_nan()) {
         (true, true) => Some(0),
@@ -123,14 +106,7 @@ pub fn compare(
 ) -> Result<(Metrics, FlipMap), FilmError> {
     let (a, b) = (&reference.image, &test.image);
     if (a.width, a.height) != (b.width, b.height) {
-        let sizes = format!(
-            "{}x{}, but {} is {}x{}",
-            b.width,
-            b.height,
-            reference_name.display(),
-            a.width,
-            a.height
-        );
+        let sizes = format!("{}x{}, but {} is {}x{}", b.width, b.height, reference_name.display(), a.width, a.height);
         return Err(FilmError::bad(test_name, format!("the picture is {sizes}")));
     }
     let flip_map = FlipMap::new(a, b);
@@ -165,16 +141,9 @@ impl Metrics {
         if let (Some(a), Some(b)) = (&a.codes, &b.codes)
             && a.bits == b.bits
         {
-            self.step = if a.bits == 8 {
-                Step::Eight
-            } else {
-                Step::Sixteen
-            };
+            self.step = if a.bits == 8 { Step::Eight } else { Step::Sixteen };
             for (a, b) in a.pixels.iter().zip(&b.pixels) {
-                let steps = (0..4)
-                    .map(|i| u64::from(a[i].abs_diff(b[i])))
-                    .max()
-                    .unwrap_or(0);
+                let steps = (0..4).map(|i| u64::from(a[i].abs_diff(b[i]))).max().unwrap_or(0);
                 self.max_ulp = self.max_ulp.max(steps);
                 self.differing_pixels += u64::from(steps > 0);
             }
@@ -213,11 +182,7 @@ impl Metrics {
                 let (a, b) = (f64::from(a), f64::from(b));
                 let error = (a - b).abs();
                 squares += error * error;
-                relative += if a.is_finite() {
-                    error * error / (a * a + RELATIVE_EPSILON)
-                } else {
-                    f64::INFINITY
-                };
+                relative += if a.is_finite() { error * error / (a * a + RELATIVE_EPSILON) } else { f64::INFINITY };
                 if error > self.max_abs {
                     self.max_abs = error;
                     self.max_abs_at = Some([pixel as u32 % self.width, pixel as u32 / self.width]);
@@ -233,11 +198,7 @@ impl Metrics {
 }
 
 fn psnr(a: &Image, b: &Image) -> Option<f64> {
-    let shown = |image: &Image| {
-        tone_map(image, &PLAIN)
-            .into_iter()
-            .flat_map(|[r, g, b, _]| [r, g, b].map(srgb_encode))
-    };
+    let shown = |image: &Image| tone_map(image, &PLAIN).into_iter().flat_map(|[r, g, b, _]| [r, g, b].map(srgb_encode));
     let squares: f64 = shown(a).zip(shown(b)).map(|(a, b)| (a - b) * (a - b)).sum();
     let mse = squares / (a.pixels.len() * 3) as f64;
     (mse > 0.0).then(|| -10.0 * libm::log10(mse))

@@ -34,12 +34,7 @@ pub struct Rect {
 impl Rect {
     /// The whole of a frame.
     pub fn whole(width: u32, height: u32) -> Self {
-        Self {
-            x: 0,
-            y: 0,
-            width,
-            height,
-        }
+        Self { x: 0, y: 0, width, height }
     }
 
     /// Number of pixels.

@@ -18,11 +18,7 @@ pub struct OutputFile {
 enum Sink {
     Stdout(io::Stdout),
     Direct(BufWriter<File>),
-    Temporary {
-        out: BufWriter<File>,
-        temporary: Remove,
-        target: PathBuf,
-    },
+    Temporary { out: BufWriter<File>, temporary: Remove, target: PathBuf },
 }
 
 /// Removes the file when dropped, unless its path was taken.
@@ -41,12 +37,7 @@ impl Drop for Remove {
 impl OutputFile {
     /// Opens `path` for writing; `-` is standard output.
     pub fn open(path: &Path) -> Result<Self, FilmError> {
-        Self::open_sink(path)
-            .map(|sink| Self {
-                path: path.into(),
-                sink,
-            })
-            .map_err(|e| FilmError::write(path, e))
+        Self::open_sink(path).map(|sink| Self { path: path.into(), sink }).map_err(|e| FilmError::write(path, e))
     }
 
     fn open_sink(path: &Path) -> io::Result<Sink> {
@@ -66,16 +57,11 @@ impl OutputFile {
                 return Err(io::Error::other("it is a folder"));
             }
             if !existing.is_file() {
-                return Ok(Sink::Direct(BufWriter::new(
-                    OpenOptions::new().write(true).open(path)?,
-                )));
+                return Ok(Sink::Direct(BufWriter::new(OpenOptions::new().write(true).open(path)?)));
             }
             // Renaming would replace a file that must not be written to.
             if existing.permissions().readonly() {
-                return Err(io::Error::new(
-                    io::ErrorKind::PermissionDenied,
-                    "it is read-only",
-                ));
+                return Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only"));
             }
             OpenOptions::new().write(true).open(path)?;
         }
@@ -84,11 +70,7 @@ impl OutputFile {
         if let Some(existing) = existing {
             file.set_permissions(existing.permissions())?;
         }
-        Ok(Sink::Temporary {
-            out: BufWriter::new(file),
-            temporary,
-            target,
-        })
+        Ok(Sink::Temporary { out: BufWriter::new(file), temporary, target })
     }
 
     /// The path as it was given.
@@ -108,20 +90,14 @@ impl OutputFile {
             match sink {
                 Sink::Stdout(mut out) => out.flush(),
                 Sink::Direct(mut out) => out.flush(),
-                Sink::Temporary {
-                    out,
-                    mut temporary,
-                    target,
-                } => {
+                Sink::Temporary { out, mut temporary, target } => {
                     let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
                     // Some file systems report a full disk only here.
                     file.sync_all()?;
                     drop(file);
                     // A second guard, for what appeared since: renaming as root would replace even `/dev/null`.
                     if fs::symlink_metadata(&target).is_ok_and(|there| !there.is_file()) {
-                        return Err(io::Error::other(
-                            "something that is no regular file has its name now",
-                        ));
+                        return Err(io::Error::other("something that is no regular file has its name now"));
                     }
                     if let Some(from) = &temporary.0 {
                         fs::rename(from, target)?;
@@ -174,10 +150,7 @@ fn folder_of(path: &Path) -> &Path {
 /// Creates a hidden file of a new name beside `target`.
 fn create_temporary(target: &Path) -> io::Result<(File, Remove)> {
     let Some(name) = target.file_name() else {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "it has no file name",
-        ));
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it has no file name"));
     };
     let folder = folder_of(target);
     for attempt in 0..1000 {
@@ -190,10 +163,7 @@ fn create_temporary(target: &Path) -> io::Result<(File, Remove)> {
             Ok(file) => return Ok((file, Remove(Some(path)))),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                return Err(io::Error::new(
-                    error.kind(),
-                    format!("no folder {}", folder.display()),
-                ));
+                return Err(io::Error::new(error.kind(), format!("no folder {}", folder.display())));
             }
             Err(error) => return Err(error),
         }

@@ -48,19 +48,10 @@ impl SampleRanges {
     pub fn check(&self, other: &Self) -> Result<(), MergeError> {
         if let Some(both) = self.overlap(other) {
             let (left, right) = (self.to_string(), other.to_string());
-            return Err(MergeError::Overlap {
-                start: both.start,
-                end: both.end,
-                left,
-                right,
-            });
+            return Err(MergeError::Overlap { start: both.start, end: both.end, left, right });
         }
         let total = self.total() + other.total();
-        if total > u64::from(MAX_SAMPLES) {
-            Err(MergeError::TooMany { total })
-        } else {
-            Ok(())
-        }
+        if total > u64::from(MAX_SAMPLES) { Err(MergeError::TooMany { total }) } else { Ok(()) }
     }
 
     /// The first samples that both sets hold.

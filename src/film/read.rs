@@ -60,40 +60,18 @@ pub fn read_picture_from(path: &Path, mut source: impl Read) -> Result<Picture, 
     let io = |e| FilmError::read(path, e);
     // The first bytes before the rest: an endless stream of something else ends here.
     let mut bytes = Vec::new();
-    source
-        .by_ref()
-        .take(16)
-        .read_to_end(&mut bytes)
-        .map_err(io)?;
+    source.by_ref().take(16).read_to_end(&mut bytes).map_err(io)?;
     if bytes.starts_with(&gfilm::MAGIC) {
-        return gfilm::read(path, &mut Cursor::new(bytes).chain(source))
-            .map(|film| film_picture(&film));
+        return gfilm::read(path, &mut Cursor::new(bytes).chain(source)).map(|film| film_picture(&film));
     }
     let format = match bytes.as_slice() {
         [0x76, 0x2f, 0x31, 0x01, ..] => None,
         [0x89, b'P', b'N', b'G', ..] => Some(ImageFormat::Png),
         [0xff, 0xd8, 0xff, ..] => Some(ImageFormat::Jpeg),
         [b'#', b'?', ..] => Some(ImageFormat::Hdr),
-        [
-            b'R',
-            b'I',
-            b'F',
-            b'F',
-            _,
-            _,
-            _,
-            _,
-            b'W',
-            b'E',
-            b'B',
-            b'P',
-            ..,
-        ] => Some(ImageFormat::WebP),
+        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Some(ImageFormat::WebP),
         _ => {
-            return Err(FilmError::bad(
-                path,
-                "not a PNG, JPEG, WebP, Radiance HDR, OpenEXR or gfilm file",
-            ));
+            return Err(FilmError::bad(path, "not a PNG, JPEG, WebP, Radiance HDR, OpenEXR or gfilm file"));
         }
     };
     source.read_to_end(&mut bytes).map_err(io)?;
@@ -109,18 +87,13 @@ pub fn film_picture(film: &Film) -> Picture {
     if !film.spec().transparent {
         image.pixels.iter_mut().for_each(|pixel| pixel[3] = 1.0);
     }
-    Picture {
-        image,
-        codes: None,
-        film_hash: Some(film.hash()),
-    }
+    Picture { image, codes: None, film_hash: Some(film.hash()) }
 }
 
 fn check_size(path: &Path, width: u64, height: u64) -> Result<(), FilmError> {
     let pixels = width.saturating_mul(height);
     if width == 0 || height == 0 || pixels > MAX_PIXELS {
-        let message =
-            format!("the picture is {width}x{height}; 1 to {MAX_PIXELS} pixels are allowed");
+        let message = format!("the picture is {width}x{height}; 1 to {MAX_PIXELS} pixels are allowed");
         return Err(FilmError::bad(path, message));
     }
     Ok(())
@@ -128,9 +101,7 @@ fn check_size(path: &Path, width: u64, height: u64) -> Result<(), FilmError> {
 
 fn read_with_image(path: &Path, bytes: &[u8], format: ImageFormat) -> Result<Picture, FilmError> {
     let bad = |e: ImageError| FilmError::bad(path, e.to_string());
-    let (width, height) = ImageReader::with_format(Cursor::new(bytes), format)
-        .into_dimensions()
-        .map_err(bad)?;
+    let (width, height) = ImageReader::with_format(Cursor::new(bytes), format).into_dimensions().map_err(bad)?;
     check_size(path, width.into(), height.into())?;
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
@@ -139,38 +110,18 @@ fn read_with_image(path: &Path, bytes: &[u8], format: ImageFormat) -> Result<Pic
     let decoded = reader.decode().map_err(bad)?;
     Ok(match decoded {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
-            let pixels = decoded
-                .into_rgba32f()
-                .pixels()
-                .map(|pixel| pixel.0)
-                .collect();
-            Picture {
-                image: Image {
-                    width,
-                    height,
-                    pixels,
-                },
-                codes: None,
-                film_hash: None,
-            }
+            let pixels = decoded.into_rgba32f().pixels().map(|pixel| pixel.0).collect();
+            Picture { image: Image { width, height, pixels }, codes: None, film_hash: None }
         }
         DynamicImage::ImageLuma16(_)
         | DynamicImage::ImageLumaA16(_)
         | DynamicImage::ImageRgb16(_)
         | DynamicImage::ImageRgba16(_) => {
-            let pixels = decoded
-                .into_rgba16()
-                .pixels()
-                .map(|pixel| pixel.0)
-                .collect();
+            let pixels = decoded.into_rgba16().pixels().map(|pixel| pixel.0).collect();
             coded_picture(width, height, Codes { bits: 16, pixels })
         }
         _ => {
-            let pixels = decoded
-                .into_rgba8()
-                .pixels()
-                .map(|pixel| pixel.0.map(u16::from))
-                .collect();
+            let pixels = decoded.into_rgba8().pixels().map(|pixel| pixel.0.map(u16::from)).collect();
             coded_picture(width, height, Codes { bits: 8, pixels })
         }
     })
@@ -178,66 +129,37 @@ fn read_with_image(path: &Path, bytes: &[u8], format: ImageFormat) -> Result<Pic
 
 fn coded_picture(width: u32, height: u32, codes: Codes) -> Picture {
     let max = (1u32 << codes.bits) - 1;
-    let linear: Vec<f64> = (0..=max)
-        .map(|code| srgb_decode(f64::from(code) / f64::from(max)))
-        .collect();
+    let linear: Vec<f64> = (0..=max).map(|code| srgb_decode(f64::from(code) / f64::from(max))).collect();
     let pixel = |[r, g, b, a]: &[u16; 4]| {
         let alpha = f64::from(*a) / f64::from(max);
         let colour = |code: u16| (linear[usize::from(code)] * alpha) as f32;
         [colour(*r), colour(*g), colour(*b), alpha as f32]
     };
     let pixels = codes.pixels.iter().map(pixel).collect();
-    Picture {
-        image: Image {
-            width,
-            height,
-            pixels,
-        },
-        codes: Some(codes),
-        film_hash: None,
-    }
+    Picture { image: Image { width, height, pixels }, codes: Some(codes), film_hash: None }
 }
 
 fn read_exr(path: &Path, bytes: &[u8]) -> Result<Picture, FilmError> {
     use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, Vec2};
     let bad = |e: exr::error::Error| FilmError::bad(path, e.to_string());
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(bad)?;
-    let has = |header: &exr::meta::header::Header, name: &str| {
-        header.channels.list.iter().any(|c| c.name.eq(name))
-    };
+    let has = |header: &exr::meta::header::Header, name: &str| header.channels.list.iter().any(|c| c.name.eq(name));
     let find = |names: &[&'static str]| {
         let named = |header: &_| names.iter().copied().find(|name| has(header, name));
-        meta.headers
-            .iter()
-            .filter(|header| !header.deep)
-            .find_map(|header| Some((header, named(header)?)))
+        meta.headers.iter().filter(|header| !header.deep).find_map(|header| Some((header, named(header)?)))
     };
     // `first_valid_layer` below takes the first part with channel `first`: this one, since none before has any.
     let Some((header, first)) = find(&["R", "G", "B"]).or_else(|| find(&["Y"])) else {
-        return Err(FilmError::bad(
-            path,
-            "no part of this EXR has channels R, G, B or Y",
-        ));
+        return Err(FilmError::bad(path, "no part of this EXR has channels R, G, B or Y"));
     };
     let (width, height) = (header.layer_size.width(), header.layer_size.height());
     check_size(path, width as u64, height as u64)?;
     // Every chunk has at least an entry in the offset table and a header of its own.
     if header.chunk_count.saturating_mul(16) > bytes.len() {
-        return Err(FilmError::bad(
-            path,
-            "truncated EXR: fewer bytes than its chunks need",
-        ));
+        return Err(FilmError::bad(path, "truncated EXR: fewer bytes than its chunks need"));
     }
-    if header
-        .channels
-        .list
-        .iter()
-        .any(|c| c.sampling != Vec2(1, 1))
-    {
-        return Err(FilmError::bad(
-            path,
-            "subsampled EXR channels (luminance and chroma) are not supported",
-        ));
+    if header.channels.list.iter().any(|c| c.sampling != Vec2(1, 1)) {
+        return Err(FilmError::bad(path, "subsampled EXR channels (luminance and chroma) are not supported"));
     }
 
     // The channel that is there for certain, then the other colours, which are 0 where absent.
@@ -270,13 +192,5 @@ fn read_exr(path: &Path, bytes: &[u8]) -> Result<Picture, FilmError> {
         .all_attributes()
         .from_buffered(Cursor::new(bytes));
     let pixels = read.map_err(bad)?.layer_data.channel_data.pixels;
-    Ok(Picture {
-        image: Image {
-            width: width as u32,
-            height: height as u32,
-            pixels,
-        },
-        codes: None,
-        film_hash: None,
-    })
+    Ok(Picture { image: Image { width: width as u32, height: height as u32, pixels }, codes: None, film_hash: None })
 }

@@ -43,11 +43,7 @@ impl Film {
         let n = self.samples.total();
         let resolve = |sums: &[i64; 4]| std::array::from_fn(|lane| mean(sums[lane], exponents[lane], n));
         let pixels = self.sums.iter().map(resolve).collect();
-        Image {
-            width: self.spec.crop.width,
-            height: self.spec.crop.height,
-            pixels,
-        }
+        Image { width: self.spec.crop.width, height: self.spec.crop.height, pixels }
     }
 
     /// The auxiliary planes, if kept; their scale is 2^22 whatever the film's unit.

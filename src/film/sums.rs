@@ -46,11 +46,7 @@ pub struct FilmSpec {
 impl FilmSpec {
     /// How the picture is displayed.
     pub fn display(&self) -> Display {
-        Display {
-            tonemap: self.tonemap,
-            exposure: self.exposure,
-            transparent: self.transparent,
-        }
+        Display { tonemap: self.tonemap, exposure: self.exposure, transparent: self.transparent }
     }
 }
 
@@ -67,13 +63,7 @@ pub struct AovSums {
 
 impl Default for AovSums {
     fn default() -> Self {
-        Self {
-            normal: [0; 3],
-            albedo: [0; 3],
-            depth: T_INFINITE,
-            object: INVALID,
-            material: INVALID,
-        }
+        Self { normal: [0; 3], albedo: [0; 3], depth: T_INFINITE, object: INVALID, material: INVALID }
     }
 }
 
@@ -97,47 +87,25 @@ pub fn sum_lanes(sum: &FilmSum) -> [i64; 4] {
 
 /// The record of four sums; inverse of `sum_lanes`.
 pub fn sum_record(lanes: [i64; 4]) -> FilmSum {
-    FilmSum {
-        low: lanes.map(|v| v as u32),
-        high: lanes.map(|v| (v as u64 >> 32) as u32),
-    }
+    FilmSum { low: lanes.map(|v| v as u32), high: lanes.map(|v| (v as u64 >> 32) as u32) }
 }
 
 /// Adds what cannot overflow: see `SUM_BITS`.
 fn add_to(sum: &mut i64, value: i64) {
-    debug_assert!(
-        sum.checked_add(value).is_some(),
-        "film sum overflows: {sum} + {value}"
-    );
+    debug_assert!(sum.checked_add(value).is_some(), "film sum overflows: {sum} + {value}");
     *sum = sum.wrapping_add(value);
 }
 
 impl Film {
     /// An empty film: no samples.
     pub fn new(spec: FilmSpec) -> Self {
-        debug_assert!(
-            (1..=65_535).contains(&spec.width) && (1..=65_535).contains(&spec.height),
-            "{spec:?}"
-        );
-        debug_assert!(
-            spec.crop.area() > 0 && Rect::whole(spec.width, spec.height).contains(&spec.crop),
-            "{spec:?}"
-        );
-        debug_assert!(
-            (-100..=100).contains(&spec.unit_exponent) && spec.exposure.is_finite(),
-            "{spec:?}"
-        );
+        debug_assert!((1..=65_535).contains(&spec.width) && (1..=65_535).contains(&spec.height), "{spec:?}");
+        debug_assert!(spec.crop.area() > 0 && Rect::whole(spec.width, spec.height).contains(&spec.crop), "{spec:?}");
+        debug_assert!((-100..=100).contains(&spec.unit_exponent) && spec.exposure.is_finite(), "{spec:?}");
         let area = spec.crop.area();
         let aovs = spec.aovs.then(|| vec![AovSums::default(); area]);
         let samples = SampleRanges::default();
-        Self {
-            spec,
-            sums: vec![[0; 4]; area],
-            aovs,
-            samples,
-            nan_count: 0,
-            clamped_count: 0,
-        }
+        Self { spec, sums: vec![[0; 4]; area], aovs, samples, nan_count: 0, clamped_count: 0 }
     }
 
     pub fn spec(&self) -> &FilmSpec {
@@ -272,50 +240,22 @@ impl Film {
             (left, right): (&T, &T),
             show: impl Fn(&T) -> String,
         ) -> Result<(), MergeError> {
-            let differs = || MergeError::Differs {
-                what,
-                left: show(left),
-                right: show(right),
-            };
-            if left == right {
-                Ok(())
-            } else {
-                Err(differs())
-            }
+            let differs = || MergeError::Differs { what, left: show(left), right: show(right) };
+            if left == right { Ok(()) } else { Err(differs()) }
         }
         let (a, b) = (&self.spec, &other.spec);
-        same(
-            "frame",
-            (&(a.width, a.height), &(b.width, b.height)),
-            |(w, h)| format!("{w}x{h}"),
-        )?;
+        same("frame", (&(a.width, a.height), &(b.width, b.height)), |(w, h)| format!("{w}x{h}"))?;
         same("crop", (&a.crop, &b.crop), Rect::to_string)?;
         same("seed", (&a.seed, &b.seed), u32::to_string)?;
         same("integrator", (&a.integrator, &b.integrator), String::clone)?;
-        same("unit", (&a.unit_exponent, &b.unit_exponent), |e| {
-            format!("2^{e}")
-        })?;
-        same(
-            "transparency",
-            (&a.transparent, &b.transparent),
-            bool::to_string,
-        )?;
+        same("unit", (&a.unit_exponent, &b.unit_exponent), |e| format!("2^{e}"))?;
+        same("transparency", (&a.transparent, &b.transparent), bool::to_string)?;
         let kept = |kept: &bool| if *kept { "kept" } else { "not kept" }.to_string();
         same("auxiliary values", (&a.aovs, &b.aovs), kept)?;
         // Last, since the digest covers much of the above, and those words say more.
-        let scene = |film: &FilmSpec| {
-            format!(
-                "{} ({})",
-                film.scene_name,
-                blake3::Hash::from(film.scene_digest)
-            )
-        };
+        let scene = |film: &FilmSpec| format!("{} ({})", film.scene_name, blake3::Hash::from(film.scene_digest));
         if a.scene_digest != b.scene_digest {
-            return Err(MergeError::Differs {
-                what: "scene",
-                left: scene(a),
-                right: scene(b),
-            });
+            return Err(MergeError::Differs { what: "scene", left: scene(a), right: scene(b) });
         }
         Ok(())
     }
@@ -331,26 +271,15 @@ impl Film {
         let spec = &self.spec;
         let mut hasher = blake3::Hasher::new();
         hasher.update(b"gonio film 1");
-        for value in [
-            spec.width,
-            spec.height,
-            spec.crop.x,
-            spec.crop.y,
-            spec.crop.width,
-            spec.crop.height,
-        ] {
+        for value in [spec.width, spec.height, spec.crop.x, spec.crop.y, spec.crop.width, spec.crop.height] {
             hasher.update(&value.to_le_bytes());
         }
         hasher.update(&spec.unit_exponent.to_le_bytes());
         hasher.update(&(self.samples.as_slice().len() as u32).to_le_bytes());
         for range in self.samples.as_slice() {
-            hasher
-                .update(&range.start.to_le_bytes())
-                .update(&range.end.to_le_bytes());
+            hasher.update(&range.start.to_le_bytes()).update(&range.end.to_le_bytes());
         }
-        hasher
-            .update(&self.nan_count.to_le_bytes())
-            .update(&self.clamped_count.to_le_bytes());
+        hasher.update(&self.nan_count.to_le_bytes()).update(&self.clamped_count.to_le_bytes());
         let mut bytes = Vec::new();
         for row in self.sums.chunks(spec.crop.width as usize) {
             bytes.clear();

@@ -80,4 +80,3 @@ pub trait Renderer {
     /// Every step of one sample of one pixel, ordered by (depth, path id).
     fn inspect(&mut self, x: u32, y: u32, sample: u32) -> Result<Vec<Bounce>, RenderError>;
 }
-

@@ -19,18 +19,32 @@ pub enum Attenuation {
     /// 1 / d^2.
     InverseSquare,
     /// min(1, 1 / (c1 + c2 d + c3 d^2)).
-    Polynomial { c1: f32, c2: f32, c3: f32 },
+    Polynomial {
+        c1: f32,
+        c2: f32,
+        c3: f32,
+    },
     None,
 }
 
 /// The light's shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
-    Point { position: Vec3 },
+    Point {
+        position: Vec3,
+    },
     /// `direction`: the way the light travels, unit.
-    Directional { direction: Vec3 },
+    Directional {
+        direction: Vec3,
+    },
     /// Half angles in radians, `inner <= outer`; `exponent` is Warn's p (0: none).
-    Spot { position: Vec3, direction: Vec3, inner: f32, outer: f32, exponent: f32 },
+    Spot {
+        position: Vec3,
+        direction: Vec3,
+        inner: f32,
+        outer: f32,
+        exponent: f32,
+    },
 }
 
 /// One light.

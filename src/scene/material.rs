@@ -23,14 +23,26 @@ pub struct Lobe {
 pub enum Model {
     Lambert,
     /// (V.R)^n; `lafortune` normalises the lobe, else it is as printed in 1975.
-    Phong { exponent: f32, lafortune: bool },
+    Phong {
+        exponent: f32,
+        lafortune: bool,
+    },
     /// (N.H)^n.
-    BlinnPhong { exponent: f32 },
+    BlinnPhong {
+        exponent: f32,
+    },
     /// One or two lobes; `normalisation_1982` prints D as the paper does.
-    CookTorrance { lobes: Vec<Lobe>, fresnel: Fresnel, normalisation_1982: bool },
+    CookTorrance {
+        lobes: Vec<Lobe>,
+        fresnel: Fresnel,
+        normalisation_1982: bool,
+    },
     Mirror,
     /// `absorption`: Beer coefficient per scene unit.
-    Dielectric { eta: f32, absorption: Rgb },
+    Dielectric {
+        eta: f32,
+        absorption: Rgb,
+    },
     /// Shown as it is, unlit.
     Emissive,
 }

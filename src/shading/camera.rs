@@ -22,15 +22,9 @@ pub fn camera_ray(camera: &Camera, film_x: f32, film_y: f32) -> CameraRay {
     let t = 1.0 - film_y * camera.scale_y;
     let offset = camera.right * s + camera.up * t;
     if camera.kind == CAMERA_PERSPECTIVE {
-        return CameraRay {
-            origin: camera.eye,
-            direction: normalize3(camera.forward + offset),
-        };
+        return CameraRay { origin: camera.eye, direction: normalize3(camera.forward + offset) };
     }
-    CameraRay {
-        origin: camera.eye + offset,
-        direction: normalize3(camera.forward),
-    }
+    CameraRay { origin: camera.eye + offset, direction: normalize3(camera.forward) }
 }
 
 #[cfg(test)]
@@ -63,10 +57,7 @@ mod tests {
         ] {
             let ray = camera_ray(&camera(CAMERA_PERSPECTIVE), x, y);
             assert_eq!(ray.origin, Vec3::new(1.0, 2.0, 3.0));
-            assert!(
-                (ray.direction - want.normalize()).length() < 3e-7,
-                "({x}, {y}): {ray:?}"
-            );
+            assert!((ray.direction - want.normalize()).length() < 3e-7, "({x}, {y}): {ray:?}");
         }
     }
 
@@ -78,11 +69,7 @@ mod tests {
             (0.0, 20.0, Vec3::new(0.0, 1.5, 3.0)),
         ] {
             let ray = camera_ray(&camera(CAMERA_ORTHOGRAPHIC), x, y);
-            assert_eq!(
-                (ray.origin, ray.direction),
-                (origin, Vec3::NEG_Z),
-                "({x}, {y})"
-            );
+            assert_eq!((ray.origin, ray.direction), (origin, Vec3::NEG_Z), "({x}, {y})");
         }
     }
 }

@@ -21,11 +21,7 @@ pub fn frame_from_normal(normal: Vec3) -> Frame {
     let a = -rcp(sign_ + normal.z);
     let b = (normal.x * normal.y) * a;
     Frame {
-        tangent: Vec3::new(
-            1.0 + (sign_ * normal.x) * (normal.x * a),
-            sign_ * b,
-            -sign_ * normal.x,
-        ),
+        tangent: Vec3::new(1.0 + (sign_ * normal.x) * (normal.x * a), sign_ * b, -sign_ * normal.x),
         bitangent: Vec3::new(b, sign_ + (normal.y * normal.y) * a, -normal.y),
         normal,
     }
@@ -41,11 +37,7 @@ pub fn frame_from_tangent(normal: Vec3, tangent: Vec3) -> Frame {
         // A second step removes what cancellation in the first one left along the normal.
         let unit = normalize3(across);
         let nearest = normalize3(unit - normal * dot3(normal, unit));
-        return Frame {
-            tangent: nearest,
-            bitangent: cross3(normal, nearest),
-            normal,
-        };
+        return Frame { tangent: nearest, bitangent: cross3(normal, nearest), normal };
     }
     frame_from_normal(normal)
 }
@@ -53,11 +45,7 @@ pub fn frame_from_tangent(normal: Vec3, tangent: Vec3) -> Frame {
 /// The components of `w` along the frame's axes.
 #[inline(always)]
 pub fn to_local(frame: Frame, w: Vec3) -> Vec3 {
-    Vec3::new(
-        dot3(frame.tangent, w),
-        dot3(frame.bitangent, w),
-        dot3(frame.normal, w),
-    )
+    Vec3::new(dot3(frame.tangent, w), dot3(frame.bitangent, w), dot3(frame.normal, w))
 }
 
 /// The vector with components `w` along the frame's axes.
@@ -72,22 +60,9 @@ mod tests {
     use proptest::prelude::*;
 
     fn assert_orthonormal(frame: Frame, bound: f64) {
-        let (t, b, n) = (
-            frame.tangent.as_dvec3(),
-            frame.bitangent.as_dvec3(),
-            frame.normal.as_dvec3(),
-        );
-        for (value, want) in [
-            (t.dot(t), 1.0),
-            (b.dot(b), 1.0),
-            (t.dot(b), 0.0),
-            (t.dot(n), 0.0),
-            (b.dot(n), 0.0),
-        ] {
-            assert!(
-                (value - want).abs() < bound,
-                "{value} instead of {want} in {frame:?}"
-            );
+        let (t, b, n) = (frame.tangent.as_dvec3(), frame.bitangent.as_dvec3(), frame.normal.as_dvec3());
+        for (value, want) in [(t.dot(t), 1.0), (b.dot(b), 1.0), (t.dot(b), 0.0), (t.dot(n), 0.0), (b.dot(n), 0.0)] {
+            assert!((value - want).abs() < bound, "{value} instead of {want} in {frame:?}");
         }
         assert!((t.cross(b) - n).length() < bound, "left-handed: {frame:?}");
     }
@@ -97,14 +72,7 @@ mod tests {
         for normal in [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z] {
             assert_orthonormal(frame_from_normal(normal), 1e-12);
         }
-        assert_eq!(
-            frame_from_normal(Vec3::Z),
-            Frame {
-                tangent: Vec3::X,
-                bitangent: Vec3::Y,
-                normal: Vec3::Z
-            }
-        );
+        assert_eq!(frame_from_normal(Vec3::Z), Frame { tangent: Vec3::X, bitangent: Vec3::Y, normal: Vec3::Z });
     }
 
     #[test]
@@ -112,27 +80,15 @@ mod tests {
         let plain = frame_from_normal(Vec3::X);
         for z in [-0.0, 1e-45, -1e-45, -1e-38] {
             let frame = frame_from_normal(Vec3::new(1.0, 0.0, z));
-            assert_eq!(
-                (frame.tangent, frame.bitangent),
-                (plain.tangent, plain.bitangent),
-                "{z}"
-            );
+            assert_eq!((frame.tangent, frame.bitangent), (plain.tangent, plain.bitangent), "{z}");
         }
     }
 
     #[test]
     fn tangents_along_the_normal_fall_back() {
         let normal = normalize3(Vec3::new(1.0, -2.0, 3.0));
-        for tangent in [
-            Vec3::ZERO,
-            normal,
-            normal * -5.0,
-            normal + Vec3::new(1e-3, 0.0, 0.0),
-        ] {
-            assert_eq!(
-                frame_from_tangent(normal, tangent),
-                frame_from_normal(normal)
-            );
+        for tangent in [Vec3::ZERO, normal, normal * -5.0, normal + Vec3::new(1e-3, 0.0, 0.0)] {
+            assert_eq!(frame_from_tangent(normal, tangent), frame_from_normal(normal));
         }
     }
 

@@ -70,11 +70,7 @@ pub fn rcp(x: f32) -> f32 {
     let x_high = leading(x);
     let residual = (1.0 - y_high * x_high) - y_high * (x - x_high);
     let refined = y_high + residual * y;
-    if x.abs() >= TINY && x.abs() <= HUGE {
-        refined
-    } else {
-        0.0
-    }
+    if x.abs() >= TINY && x.abs() <= HUGE { refined } else { 0.0 }
 }
 
 /// a / b within 0.51 ULP for |b| in TINY..HUGE; exact where the quotient is a float.
@@ -89,11 +85,7 @@ pub fn div(a: f32, b: f32) -> f32 {
     let residual = (a - q_high * b_high) - q_high * (b - b_high);
     let refined = q_high + residual * y;
     let valid = b.abs() >= TINY && b.abs() <= HUGE && a.abs() >= TINY && quotient.abs() >= TINY;
-    let result = if quotient.abs() <= HUGE {
-        refined
-    } else {
-        quotient
-    };
+    let result = if quotient.abs() <= HUGE { refined } else { quotient };
     if valid { result } else { 0.0 }
 }
 
@@ -128,8 +120,7 @@ pub fn sqrt_(x: f32) -> f32 {
 #[inline(always)]
 fn sin_quarter(u: f32) -> f32 {
     let z = u * u;
-    let sine = u
-        * (6.28318548 + z * (-41.3417664 + z * (81.6086349 + z * (-76.7279816 + z * 40.8759079))));
+    let sine = u * (6.28318548 + z * (-41.3417664 + z * (81.6086349 + z * (-76.7279816 + z * 40.8759079))));
     if sine < 1.0 { sine } else { 1.0 }
 }
 
@@ -192,9 +183,7 @@ fn power_of_two(n: i32) -> f32 {
 fn exp2_fraction(f: f32) -> f32 {
     1.0 + f
         * (0.693147182
-            + f * (0.240226507
-                + f * (0.0555035695
-                    + f * (0.00961802714 + f * (0.00133909017 + f * 0.00015471119)))))
+            + f * (0.240226507 + f * (0.0555035695 + f * (0.00961802714 + f * (0.00133909017 + f * 0.00015471119)))))
 }
 
 /// 2^x within 1.5 ULP for x in -126..127; 0 below (and for NaN), 2^127 above.
@@ -214,11 +203,7 @@ pub fn exp_(x: f32) -> f32 {
     // ln 2 in two parts, the first of nine bits (Cody and Waite 1980).
     let rest = (inside - whole * 0.693359375) - whole * -0.000212194442;
     let power = exp2_fraction(rest * LOG2_E) * power_of_two(whole as i32);
-    if x >= -87.33 {
-        if x <= 88.02 { power } else { LARGEST_POWER }
-    } else {
-        0.0
-    }
+    if x >= -87.33 { if x <= 88.02 { power } else { LARGEST_POWER } } else { 0.0 }
 }
 
 /// x = 2^exponent (1 + f) with f in sqrt(0.5) - 1 .. sqrt(2) - 1.
@@ -234,30 +219,16 @@ struct LogParts {
 #[inline(always)]
 fn log_parts(x: f32) -> LogParts {
     let signed_bits = x.to_bits() as i32;
-    let positive = if signed_bits > 0x00800000 {
-        signed_bits
-    } else {
-        0x00800000
-    };
-    let bits = if positive < 0x7f7fffff {
-        positive
-    } else {
-        0x7f7fffff
-    };
+    let positive = if signed_bits > 0x00800000 { signed_bits } else { 0x00800000 };
+    let bits = if positive < 0x7f7fffff { positive } else { 0x7f7fffff };
     let exponent = (bits - 0x3f3504f3) >> 23;
     let f = f32::from_bits((bits - (exponent << 23)) as u32) - 1.0;
     let p = 0.333333164
         + f * (-0.250007451
             + f * (0.200022519
-                + f * (-0.166265175
-                    + f * (0.141824901
-                        + f * (-0.131124794 + f * (0.128690496 + f * -0.0788623393))))));
+                + f * (-0.166265175 + f * (0.141824901 + f * (-0.131124794 + f * (0.128690496 + f * -0.0788623393))))));
     let square = f * f;
-    LogParts {
-        exponent: exponent as f32,
-        f,
-        rest: (square * f) * p - 0.5 * square,
-    }
+    LogParts { exponent: exponent as f32, f, rest: (square * f) * p - 0.5 * square }
 }
 
 /// Binary logarithm within 2.5 ULP for x >= 2^-126; -126 below, 128 for infinity; one of them for NaN.
@@ -295,13 +266,9 @@ pub fn atan2_(y: f32, x: f32) -> f32 {
     let short_ = if steep { width } else { height };
     // Above tan(pi / 8) turn by pi / 4: atan(a) = pi / 4 + atan((a - 1) / (a + 1)).
     let turned = short_ > long_ * 0.414213568;
-    let t = div(
-        if turned { short_ - long_ } else { short_ },
-        if turned { short_ + long_ } else { long_ },
-    );
+    let t = div(if turned { short_ - long_ } else { short_ }, if turned { short_ + long_ } else { long_ });
     let z = t * t;
-    let p = -0.333333254
-        + z * (0.199989811 + z * (-0.142518088 + z * (0.106480621 + z * -0.0620259345)));
+    let p = -0.333333254 + z * (0.199989811 + z * (-0.142518088 + z * (0.106480621 + z * -0.0620259345)));
     let octant = (if turned { QUARTER_PI } else { 0.0 }) + (t + t * (z * p));
     let quadrant = if steep { HALF_PI - octant } else { octant };
     let half_plane = if x <= -TINY { PI - quadrant } else { quadrant };
@@ -311,9 +278,7 @@ pub fn atan2_(y: f32, x: f32) -> f32 {
 /// asin(t) for t in 0..0.5, given z = t^2.
 #[inline(always)]
 fn asin_half(t: f32, z: f32) -> f32 {
-    t + t
-        * (z * (0.166667044
-            + z * (0.0749690682 + z * (0.0452950709 + z * (0.0249514263 + z * 0.040976204)))))
+    t + t * (z * (0.166667044 + z * (0.0749690682 + z * (0.0452950709 + z * (0.0249514263 + z * 0.040976204)))))
 }
 
 /// acos(x), 0..pi, within 4e-7; x is clamped to -1..1.
@@ -322,11 +287,7 @@ pub fn acos_(x: f32) -> f32 {
     let size = min_(x.abs(), 1.0);
     // Above 0.5 through the half angle: acos(a) = 2 asin(sqrt((1 - a) / 2)).
     let steep = size > 0.5;
-    let z = if steep {
-        (1.0 - size) * 0.5
-    } else {
-        size * size
-    };
+    let z = if steep { (1.0 - size) * 0.5 } else { size * size };
     let angle = asin_half(if steep { sqrt_(z) } else { size }, z);
     let positive = if steep { 2.0 * angle } else { HALF_PI - angle };
     if x < 0.0 { PI - positive } else { positive }
@@ -337,11 +298,7 @@ pub fn acos_(x: f32) -> f32 {
 pub fn asin_(x: f32) -> f32 {
     let size = min_(x.abs(), 1.0);
     let steep = size > 0.5;
-    let z = if steep {
-        (1.0 - size) * 0.5
-    } else {
-        size * size
-    };
+    let z = if steep { (1.0 - size) * 0.5 } else { size * size };
     let angle = asin_half(if steep { sqrt_(z) } else { size }, z);
     let positive = if steep { HALF_PI - 2.0 * angle } else { angle };
     if x < 0.0 { -positive } else { positive }
@@ -384,11 +341,7 @@ pub fn dot3(a: Vec3, b: Vec3) -> f32 {
 
 #[inline(always)]
 pub fn cross3(a: Vec3, b: Vec3) -> Vec3 {
-    Vec3::new(
-        a.y * b.z - a.z * b.y,
-        a.z * b.x - a.x * b.z,
-        a.x * b.y - a.y * b.x,
-    )
+    Vec3::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 }
 
 /// The largest component, with its sign.
@@ -418,9 +371,5 @@ pub fn normalize3(v: Vec3) -> Vec3 {
     // A power of two that brings the largest component to 1..2, so that squares neither overflow nor vanish.
     let scaled = v * f32::from_bits(0x7f000000u32.wrapping_sub(largest.to_bits() & 0x7f800000));
     let square = dot3(scaled, scaled);
-    if valid && square <= 12.0 {
-        scaled * rsqrt(square)
-    } else {
-        Vec3::ZERO
-    }
+    if valid && square <= 12.0 { scaled * rsqrt(square) } else { Vec3::ZERO }
 }

@@ -49,10 +49,7 @@ pub fn unit_float(x: u32) -> f32 {
 /// The randomness of one dimension of one path: equal for all samples of a pixel.
 #[inline(always)]
 fn dimension_seed(key: SampleKey, dimension: u32) -> u32 {
-    hash_combine(
-        hash_combine(hash_combine(key.seed, key.pixel), key.path_id),
-        dimension,
-    )
+    hash_combine(hash_combine(hash_combine(key.seed, key.pixel), key.path_id), dimension)
 }
 
 /// A random permutation of the numbers in which bit i of the result depends on bits 0..i of `x` only: Owen scrambling
@@ -148,11 +145,7 @@ pub fn sample_1d(key: SampleKey, dimension: u32) -> f32 {
         let strata = strata_in_range(key.strata);
         let count = strata * strata;
         let block = key.sample_index / count; // integer
-        let cell = permute(
-            key.sample_index - block * count,
-            count,
-            hash_combine(hash_u32(seed), block),
-        );
+        let cell = permute(key.sample_index - block * count, count, hash_combine(hash_u32(seed), block));
         return jittered(cell, count, random);
     }
     unit_float(random)
@@ -179,16 +172,9 @@ pub fn sample_2d(key: SampleKey, dimension: u32) -> Vec2 {
         let strata = strata_in_range(key.strata);
         let count = strata * strata;
         let block = key.sample_index / count; // integer
-        let cell = permute(
-            key.sample_index - block * count,
-            count,
-            hash_combine(hash_u32(seed), block),
-        );
+        let cell = permute(key.sample_index - block * count, count, hash_combine(hash_u32(seed), block));
         let row = cell / strata; // integer
-        return Vec2::new(
-            jittered(cell - row * strata, strata, random_x),
-            jittered(row, strata, random_y),
-        );
+        return Vec2::new(jittered(cell - row * strata, strata, random_x), jittered(row, strata, random_y));
     }
     Vec2::new(unit_float(random_x), unit_float(random_y))
 }
@@ -196,10 +182,7 @@ pub fn sample_2d(key: SampleKey, dimension: u32) -> Vec2 {
 /// 32 random bits for the film's dithering, independent of all samples.
 #[inline]
 pub fn dither_hash(key: SampleKey, dimension: u32) -> u32 {
-    hash_combine(
-        dimension_seed(key, dimension) ^ 0xd1774e52,
-        key.sample_index,
-    )
+    hash_combine(dimension_seed(key, dimension) ^ 0xd1774e52, key.sample_index)
 }
 
 #[cfg(test)]
@@ -209,17 +192,10 @@ mod tests {
     #[test]
     fn jitter_never_leaves_its_cell() {
         for count in (1..=300).chain([1023, 4096, 65_024, 65_025]) {
-            for cell in (0..count)
-                .step_by(1 + count as usize / 200)
-                .chain([count - 1])
-            {
+            for cell in (0..count).step_by(1 + count as usize / 200).chain([count - 1]) {
                 for random in [0, 0x80000000, u32::MAX] {
                     let u = jittered(cell, count, random) as f64 * count as f64;
-                    assert_eq!(
-                        u.floor(),
-                        cell as f64,
-                        "{random:#x} in cell {cell} of {count}"
-                    );
+                    assert_eq!(u.floor(), cell as f64, "{random:#x} in cell {cell} of {count}");
                 }
             }
         }

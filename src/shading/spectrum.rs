@@ -45,12 +45,7 @@ fn flush_lane(x: f32) -> f32 {
 /// among the subnormal numbers, which some devices keep and others do not.
 #[inline(always)]
 pub fn spectrum_flush(s: Spectrum) -> Spectrum {
-    Vec4::new(
-        flush_lane(s.x),
-        flush_lane(s.y),
-        flush_lane(s.z),
-        flush_lane(s.w),
-    )
+    Vec4::new(flush_lane(s.x), flush_lane(s.y), flush_lane(s.z), flush_lane(s.w))
 }
 
 #[cfg(test)]
@@ -80,10 +75,7 @@ mod tests {
     fn white_has_luminance_one_and_green_most_of_it() {
         let y = |r, g, b| spectrum_luminance(Vec4::new(r, g, b, 9.0));
         assert!((y(1.0, 1.0, 1.0) - 1.0).abs() < 1e-7);
-        assert_eq!(
-            (y(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0), y(0.0, 0.0, 1.0)),
-            (0.2126, 0.7152, 0.0722)
-        );
+        assert_eq!((y(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0), y(0.0, 0.0, 1.0)), (0.2126, 0.7152, 0.0722));
     }
 
     #[test]

@@ -19,11 +19,7 @@ pub fn square_to_disk(u: Vec2) -> Vec2 {
     let turns = 0.125 * div(if wide { b } else { a }, radius);
     let major = radius * cos_turns(turns);
     let minor = radius * sin_turns(turns);
-    if wide {
-        Vec2::new(major, minor)
-    } else {
-        Vec2::new(minor, major)
-    }
+    if wide { Vec2::new(major, minor) } else { Vec2::new(minor, major) }
 }
 
 /// The inverse of `square_to_disk`, within 1e-6 in the disk.
@@ -37,11 +33,7 @@ pub fn disk_to_square(p: Vec2) -> Vec2 {
     let turned = 1.27323949 * atan2_(minor, major.abs());
     let a = 0.5 + 0.5 * (if major < 0.0 { -radius } else { radius });
     let b = 0.5 + 0.5 * (turned * radius);
-    if wide {
-        Vec2::new(a, b)
-    } else {
-        Vec2::new(b, a)
-    }
+    if wide { Vec2::new(a, b) } else { Vec2::new(b, a) }
 }
 
 /// A direction with density cos / pi: the disk lifted onto the hemisphere (Malley's method).
@@ -82,11 +74,7 @@ pub fn uniform_hemisphere_pdf(cos_theta: f32) -> f32 {
 pub fn square_to_uniform_sphere(u: Vec2) -> Vec3 {
     // 1 - z^2 for z = 1 - 2 u.x, without cancellation.
     let radius = 2.0 * sqrt_(u.x * (1.0 - u.x));
-    Vec3::new(
-        radius * cos_turns(u.y),
-        radius * sin_turns(u.y),
-        1.0 - 2.0 * u.x,
-    )
+    Vec3::new(radius * cos_turns(u.y), radius * sin_turns(u.y), 1.0 - 2.0 * u.x)
 }
 
 /// 1 / (4 pi).
@@ -99,10 +87,7 @@ pub fn uniform_sphere_pdf() -> f32 {
 #[inline]
 pub fn uniform_sphere_to_square(w: Vec3) -> Vec2 {
     let turns = INV_TWO_PI * atan2_(w.y, w.x);
-    Vec2::new(
-        0.5 - 0.5 * w.z,
-        if turns < 0.0 { turns + 1.0 } else { turns },
-    )
+    Vec2::new(0.5 - 0.5 * w.z, if turns < 0.0 { turns + 1.0 } else { turns })
 }
 
 /// Barycentric coordinates of the second and third corner, both >= 0, sum < 1 (Heitz 2019, "A Low-Distortion Map

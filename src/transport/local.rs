@@ -37,13 +37,27 @@ pub fn own_weight(material: &Material) -> f32 {
 }
 
 /// What the surface adds for one light, before any shadow: throughput * eval * radiance.
-pub fn light_contribution(weight: Spectrum, material: &Material, frame: Frame, wo: Vec3, wi: Vec3, radiance: Spectrum) -> Spectrum {
+pub fn light_contribution(
+    weight: Spectrum,
+    material: &Material,
+    frame: Frame,
+    wo: Vec3,
+    wi: Vec3,
+    radiance: Spectrum,
+) -> Spectrum {
     weight * eval_material(material, to_local(frame, wo), to_local(frame, wi)) * radiance
 }
 
 /// Adds emission, ambient and every light's share of the surface, and lets the ray go on through a pane.
 /// `key`: of the path. Directions in world space. Radiance along the ray's way back.
-pub fn shade_local(scene: &SceneView, path: &PathState, key: SampleKey, surface: &Surface, material: &Material, queues: &mut Queues) {
+pub fn shade_local(
+    scene: &SceneView,
+    path: &PathState,
+    key: SampleKey,
+    surface: &Surface,
+    material: &Material,
+    queues: &mut Queues,
+) {
     let wo = -path.ray.direction;
     let weight = path.throughput * own_weight(material);
     let ambient = spectrum_from_rgb(scene.header.ambient) * ambient_material(material);
@@ -64,7 +78,10 @@ pub fn shade_local(scene: &SceneView, path: &PathState, key: SampleKey, surface:
                 let light_dither = dither_hash(key, DITHER_LIGHT + index);
                 if scene.header.shadows != 0 && light.casts_shadow != 0 {
                     let ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
-                    push_shadow(queues, ShadowRay { ray, contribution, slot: path.slot, dither: light_dither, _pad0: 0, _pad1: 0 });
+                    push_shadow(
+                        queues,
+                        ShadowRay { ray, contribution, slot: path.slot, dither: light_dither, _pad0: 0, _pad1: 0 },
+                    );
                 } else {
                     add_contribution(queues, scene.header.film_scale, path.slot, contribution, light_dither);
                 }

@@ -61,7 +61,15 @@ pub fn add_contribution(queues: &mut Queues, scale: f32, slot: u32, value: Vec4,
 }
 
 /// Records the first hit of a camera ray for the auxiliary channels.
-pub fn add_aov(queues: &mut Queues, path: &PathState, depth: f32, normal: Vec3, albedo: Vec3, object: u32, material: u32) {
+pub fn add_aov(
+    queues: &mut Queues,
+    path: &PathState,
+    depth: f32,
+    normal: Vec3,
+    albedo: Vec3,
+    object: u32,
+    material: u32,
+) {
     for lane in 0..3 {
         film::add_fixed(&mut queues.aov.normal, lane, film::to_fixed(normal[lane as usize], film::AOV_SCALE, 0.5));
         film::add_fixed(&mut queues.aov.albedo, lane, film::to_fixed(albedo[lane as usize], film::AOV_SCALE, 0.5));

@@ -46,7 +46,13 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
             let radiance = spectrum_from_rgb(background(scene, path.ray.direction));
             let seen = path.throughput * radiance;
             let dither = dither_hash(key, DITHER_BACKGROUND);
-            add_contribution(queues, scene.header.film_scale, path.slot, Vec4::new(seen.x, seen.y, seen.z, 0.0), dither);
+            add_contribution(
+                queues,
+                scene.header.film_scale,
+                path.slot,
+                Vec4::new(seen.x, seen.y, seen.z, 0.0),
+                dither,
+            );
         }
         return;
     }
@@ -67,4 +73,3 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
         shade_whitted(scene, &path, &surface, &material, queues);
     }
 }
-

@@ -15,7 +15,15 @@ use crate::trace::surface::Surface;
 use glam::{Vec3, Vec4};
 
 /// Appends one branch, unless its weight is below the scene's threshold.
-pub fn push_branch(scene: &SceneView, path: &PathState, surface: &Surface, wi: Vec3, weight: Spectrum, lobe: u32, queues: &mut Queues) {
+pub fn push_branch(
+    scene: &SceneView,
+    path: &PathState,
+    surface: &Surface,
+    wi: Vec3,
+    weight: Spectrum,
+    lobe: u32,
+    queues: &mut Queues,
+) {
     let mut branch = *path;
     branch.throughput = path.throughput * weight;
     if spectrum_max(branch.throughput) < scene.header.min_weight {

@@ -34,7 +34,8 @@ pub fn all() -> Vec<PathBuf> {
 
 /// A third-party file, or None with a line that says so.
 pub fn asset(path: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("GONIO_ASSETS").map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/assets"), PathBuf::from);
+    let root = std::env::var_os("GONIO_ASSETS")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/assets"), PathBuf::from);
     let file = root.join(path);
     if !file.exists() {
         println!("SKIPPED: no third-party scene {path}");

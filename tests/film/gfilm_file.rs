@@ -15,20 +15,13 @@ fn read(bytes: &[u8]) -> Result<Film, String> {
     gfilm::read(Path::new("a.gfilm"), &mut &bytes[..]).map_err(|error| {
         let message = error.to_string();
         assert_eq!(error.exit_code(), 65, "{message}");
-        message
-            .strip_prefix("a.gfilm: ")
-            .expect("the message names the file")
-            .to_owned()
+        message.strip_prefix("a.gfilm: ").expect("the message names the file").to_owned()
     })
 }
 
 #[test]
 fn a_film_survives_its_file() {
-    let mut plain = Film::new(FilmSpec {
-        aovs: false,
-        scene_name: "Kugel \u{00e4}\u{2603}.toml".into(),
-        ..spec()
-    });
+    let mut plain = Film::new(FilmSpec { aovs: false, scene_name: "Kugel \u{00e4}\u{2603}.toml".into(), ..spec() });
     plain.record(3..9, 1, u64::MAX);
     for film in [film_of([0, 1, 7]), film_of([]), plain] {
         let read = read(&bytes_of(&film)).unwrap();
@@ -47,10 +40,7 @@ fn a_film_can_be_read_from_a_slow_pipe() {
         }
     }
     let film = film_of(0..3);
-    assert_eq!(
-        gfilm::read(Path::new("-"), &mut Slow(&bytes_of(&film))).unwrap(),
-        film
-    );
+    assert_eq!(gfilm::read(Path::new("-"), &mut Slow(&bytes_of(&film))).unwrap(), film);
 }
 
 /// A film file with another header; its checksum is right.
@@ -59,10 +49,7 @@ fn with_header(change: impl Fn(&mut serde_json::Value)) -> Vec<u8> {
     let end = 16 + u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
     let mut header = serde_json::from_slice(&bytes[16..end]).unwrap();
     change(&mut header);
-    with_raw_header(
-        &serde_json::to_vec(&header).unwrap(),
-        &bytes[end..bytes.len() - 32],
-    )
+    with_raw_header(&serde_json::to_vec(&header).unwrap(), &bytes[end..bytes.len() - 32])
 }
 
 fn with_raw_header(header: &[u8], planes: &[u8]) -> Vec<u8> {
@@ -81,49 +68,23 @@ fn malformed_headers_are_refused_with_the_reason() {
     let cases: [(&str, Change); 15] = [
         ("the frame is 0x5", |h| h["width"] = 0.into()),
         ("the frame is 70000x5", |h| h["width"] = 70_000.into()),
-        ("the crop 0x2+4+1 is not inside", |h| {
-            h["crop"]["width"] = 0.into()
-        }),
-        ("the crop 3x2+4294967295+1 is not inside", |h| {
-            h["crop"]["x"] = u32::MAX.into()
-        }),
+        ("the crop 0x2+4+1 is not inside", |h| h["crop"]["width"] = 0.into()),
+        ("the crop 3x2+4294967295+1 is not inside", |h| h["crop"]["x"] = u32::MAX.into()),
         ("unit_exponent is 101", |h| h["unit_exponent"] = 101.into()),
-        ("sample range 4..4", |h| {
-            h["samples"] = serde_json::json!([[4, 4]])
-        }),
-        ("sample range 9..3", |h| {
-            h["samples"] = serde_json::json!([[9, 3]])
-        }),
-        ("sample range 0..16777217", |h| {
-            h["samples"] = serde_json::json!([[0, 16_777_217]])
-        }),
-        ("sample ranges overlap", |h| {
-            h["samples"] = serde_json::json!([[0, 4], [3, 5]])
-        }),
-        ("scene_digest is \"12\"", |h| {
-            h["scene_digest"] = "12".into()
-        }),
-        (
-            "tonemap is \"filmic\"; allowed: clamp, normalise, reinhard",
-            |h| h["tonemap"] = "filmic".into(),
-        ),
+        ("sample range 4..4", |h| h["samples"] = serde_json::json!([[4, 4]])),
+        ("sample range 9..3", |h| h["samples"] = serde_json::json!([[9, 3]])),
+        ("sample range 0..16777217", |h| h["samples"] = serde_json::json!([[0, 16_777_217]])),
+        ("sample ranges overlap", |h| h["samples"] = serde_json::json!([[0, 4], [3, 5]])),
+        ("scene_digest is \"12\"", |h| h["scene_digest"] = "12".into()),
+        ("tonemap is \"filmic\"; allowed: clamp, normalise, reinhard", |h| h["tonemap"] = "filmic".into()),
         ("unknown field `surprise`", |h| h["surprise"] = 1.into()),
-        ("missing field `seed`", |h| {
-            drop(h.as_object_mut().unwrap().remove("seed"))
-        }),
-        ("invalid type: null", |h| {
-            h["exposure"] = serde_json::Value::Null
-        }),
-        ("exposure is not a finite number", |h| {
-            h["exposure"] = 1e300.into()
-        }),
+        ("missing field `seed`", |h| drop(h.as_object_mut().unwrap().remove("seed"))),
+        ("invalid type: null", |h| h["exposure"] = serde_json::Value::Null),
+        ("exposure is not a finite number", |h| h["exposure"] = 1e300.into()),
     ];
     for (reason, change) in cases {
         let message = read(&with_header(change)).unwrap_err();
-        assert!(
-            message.starts_with("film header: ") && message.contains(reason),
-            "{reason}: {message}"
-        );
+        assert!(message.starts_with("film header: ") && message.contains(reason), "{reason}: {message}");
     }
     let message = read(&with_raw_header(b"{\xff", b"")).unwrap_err();
     assert!(message.starts_with("film header: "), "{message}");
@@ -140,47 +101,25 @@ fn malformed_files_are_refused_with_the_reason() {
     let longer = |tail: &[u8]| [&good[..], tail].concat();
     let last_plane_byte = good.len() - 33;
     let cases = [
-        (
-            "truncated film: it ends after 0 bytes, inside the magic",
-            vec![],
-        ),
-        (
-            "truncated film: it ends after 20 bytes, inside the header",
-            good[..20].to_vec(),
-        ),
+        ("truncated film: it ends after 0 bytes, inside the magic", vec![]),
+        ("truncated film: it ends after 20 bytes, inside the header", good[..20].to_vec()),
         ("inside the checksum", good[..good.len() - 1].to_vec()),
-        (
-            "inside the auxiliary values",
-            good[..good.len() - 40].to_vec(),
-        ),
-        (
-            "inside the sums",
-            good[..good.len() - 32 - 60 * PIXELS - 1].to_vec(),
-        ),
+        ("inside the auxiliary values", good[..good.len() - 40].to_vec()),
+        ("inside the sums", good[..good.len() - 32 - 60 * PIXELS - 1].to_vec()),
         ("not a gonio film (wrong magic)", changed(0, b"g")),
         ("not a gonio film (wrong magic)", changed(5, b"\n\n\x1a")),
-        (
-            "film format 2 is newer than this program's, 1",
-            changed(8, &[2]),
-        ),
+        ("film format 2 is newer than this program's, 1", changed(8, &[2])),
         ("film format 0 does not exist", changed(8, &[0])),
         ("the header claims 4294967295 bytes", changed(12, &[255; 4])),
-        (
-            "damaged film: the checksum does not match",
-            changed(last_plane_byte, &[!good[last_plane_byte]]),
-        ),
-        (
-            "damaged film: the checksum does not match",
-            changed(good.len() - 1, &[!good[good.len() - 1]]),
-        ),
+        ("damaged film: the checksum does not match", changed(last_plane_byte, &[!good[last_plane_byte]])),
+        ("damaged film: the checksum does not match", changed(good.len() - 1, &[!good[good.len() - 1]])),
         ("bytes follow the end of the film", longer(b"x")),
         // A frame of 65,535 squared claims 137 GB of sums; what is read ends with the file.
         (
             "inside the sums",
             with_header(|h| {
                 (h["width"], h["height"]) = (65_535.into(), 65_535.into());
-                h["crop"] =
-                    serde_json::json!({ "x": 0, "y": 0, "width": 65_535, "height": 65_535 });
+                h["crop"] = serde_json::json!({ "x": 0, "y": 0, "width": 65_535, "height": 65_535 });
             }),
         ),
         // One sample cannot have such a sum, and adding it up could overflow.
@@ -191,11 +130,7 @@ fn malformed_files_are_refused_with_the_reason() {
     ];
     for (reason, bytes) in cases {
         // The header alone would do for most sums: the first is made too large for certain.
-        let bytes = if reason.starts_with("sums of") {
-            with_large_sum(bytes)
-        } else {
-            bytes
-        };
+        let bytes = if reason.starts_with("sums of") { with_large_sum(bytes) } else { bytes };
         let message = read(&bytes).unwrap_err();
         assert!(message.contains(reason), "{reason}: {message}");
     }

@@ -3,8 +3,7 @@
 mod gfilm_file;
 
 use gonio::film::{
-    AovSums, Film, FilmSpec, MAX_SAMPLES, MergeError, Rect, SUM_BITS, SampleRanges, sum_lanes,
-    sum_record,
+    AovSums, Film, FilmSpec, MAX_SAMPLES, MergeError, Rect, SUM_BITS, SampleRanges, sum_lanes, sum_record,
 };
 use gonio::layout::{AovPixel, FilmSum, INVALID, T_INFINITE};
 use gonio::scene::ToneMap;
@@ -19,12 +18,7 @@ fn spec() -> FilmSpec {
     FilmSpec {
         width: 8,
         height: 5,
-        crop: Rect {
-            x: 4,
-            y: 1,
-            width: WIDTH,
-            height: HEIGHT,
-        },
+        crop: Rect { x: 4, y: 1, width: WIDTH, height: HEIGHT },
         unit_exponent: 0,
         seed: 7,
         scene_digest: [3; 32],
@@ -47,11 +41,7 @@ fn sample_sum(sample: u32, pixel: usize, lane: usize) -> i64 {
 
 /// Adds one sample as a backend does.
 fn add_sample(film: &mut Film, sample: u32) {
-    let lanes = |pixel: usize, first: usize| {
-        sum_record(std::array::from_fn(|i| {
-            sample_sum(sample, pixel, first + i)
-        }))
-    };
+    let lanes = |pixel: usize, first: usize| sum_record(std::array::from_fn(|i| sample_sum(sample, pixel, first + i)));
     let sums: Vec<FilmSum> = (0..PIXELS).map(|pixel| lanes(pixel, 0)).collect();
     let aovs: Vec<AovPixel> = (0..PIXELS)
         .map(|pixel| AovPixel {
@@ -65,18 +55,12 @@ fn add_sample(film: &mut Film, sample: u32) {
         .collect();
     film.add_sums(film.crop(), &sums);
     film.add_aovs(film.crop(), &aovs, sample == 0);
-    film.record(
-        sample..sample + 1,
-        u64::from(sample % 3),
-        u64::from(sample % 2),
-    );
+    film.record(sample..sample + 1, u64::from(sample % 3), u64::from(sample % 2));
 }
 
 fn film_of(samples: impl IntoIterator<Item = u32>) -> Film {
     let mut film = Film::new(spec());
-    samples
-        .into_iter()
-        .for_each(|sample| add_sample(&mut film, sample));
+    samples.into_iter().for_each(|sample| add_sample(&mut film, sample));
     film
 }
 
@@ -133,12 +117,7 @@ fn tiles_of_a_crop_add_up_to_the_crop() {
     for y in 0..HEIGHT {
         for (x, width) in [(0, 1), (1, 2)] {
             let first = (y * WIDTH + x) as usize;
-            let rect = Rect {
-                x: 4 + x,
-                y: 1 + y,
-                width,
-                height: 1,
-            };
+            let rect = Rect { x: 4 + x, y: 1 + y, width, height: 1 };
             tiled.add_sums(rect, &all[first..first + width as usize]);
         }
     }
@@ -153,19 +132,13 @@ fn a_film_refuses_another_picture_and_names_both_values() {
         ("frame", "8x5", "9x5", |s| s.width = 9),
         ("crop", "3x2+4+1", "3x2+4+2", |s| s.crop.y = 2),
         ("seed", "7", "8", |s| s.seed = 8),
-        ("integrator", "whitted", "local", |s| {
-            s.integrator = "local".into()
-        }),
+        ("integrator", "whitted", "local", |s| s.integrator = "local".into()),
         ("unit", "2^0", "2^-3", |s| s.unit_exponent = -3),
         ("transparency", "false", "true", |s| s.transparent = true),
         ("auxiliary values", "kept", "not kept", |s| s.aovs = false),
-        ("scene", "spheres.toml (0303", "spheres.toml (0404", |s| {
-            s.scene_digest = [4; 32]
-        }),
+        ("scene", "spheres.toml (0303", "spheres.toml (0404", |s| s.scene_digest = [4; 32]),
         // Where the digest follows from another difference, that one is named.
-        ("seed", "7", "9", |s| {
-            (s.seed, s.scene_digest) = (9, [4; 32])
-        }),
+        ("seed", "7", "9", |s| (s.seed, s.scene_digest) = (9, [4; 32])),
     ];
     for (what, left, right, change) in cases {
         let mut other = spec();
@@ -174,14 +147,7 @@ fn a_film_refuses_another_picture_and_names_both_values() {
         let before = film.clone();
         let error = film.merge(&Film::new(other)).unwrap_err();
         let message = error.to_string();
-        let MergeError::Differs {
-            what: named,
-            left: l,
-            right: r,
-        } = error
-        else {
-            panic!("{message}")
-        };
+        let MergeError::Differs { what: named, left: l, right: r } = error else { panic!("{message}") };
         assert_eq!(named, what);
         assert!(l.starts_with(left) && r.starts_with(right), "{message}");
         assert!(message.contains(&l) && message.contains(&r), "{message}");
@@ -204,10 +170,7 @@ fn overlapping_samples_are_refused_and_nothing_is_added() {
     let mut film = film_of([0, 1, 2, 5]);
     let before = film.clone();
     let error = film.merge(&film_of([4, 5, 6])).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "both films hold the samples 5..6 (they hold 0..3, 5..6 and 4..7)"
-    );
+    assert_eq!(error.to_string(), "both films hold the samples 5..6 (they hold 0..3, 5..6 and 4..7)");
     assert_eq!(film, before);
 }
 
@@ -224,12 +187,7 @@ fn more_samples_than_the_sums_can_hold_are_refused() {
 
     let mut ranges = SampleRanges::new([0..MAX_SAMPLES]).unwrap();
     let error = ranges.insert(MAX_SAMPLES..MAX_SAMPLES + 1).unwrap_err();
-    assert_eq!(
-        error,
-        MergeError::TooMany {
-            total: u64::from(MAX_SAMPLES) + 1
-        }
-    );
+    assert_eq!(error, MergeError::TooMany { total: u64::from(MAX_SAMPLES) + 1 });
 }
 
 #[test]
@@ -254,10 +212,7 @@ fn depth_and_ids_are_those_of_sample_0_or_a_miss() {
         ..AovSums::default()
     };
     assert_eq!(late.aovs().unwrap()[1], miss);
-    assert_eq!(
-        (miss.depth, miss.object, miss.material),
-        (T_INFINITE, INVALID, INVALID)
-    );
+    assert_eq!((miss.depth, miss.object, miss.material), (T_INFINITE, INVALID, INVALID));
     let mut film = late.clone();
     film.merge(&film_of([0])).unwrap();
     let aov = film.aovs().unwrap()[1];
@@ -267,54 +222,21 @@ fn depth_and_ids_are_those_of_sample_0_or_a_miss() {
 #[test]
 fn resolve_divides_by_the_samples_and_scales_by_the_unit() {
     let resolved = |exponent: i32, samples: u32, sums: [i64; 4]| {
-        let mut film = Film::new(FilmSpec {
-            unit_exponent: exponent,
-            ..spec()
-        });
-        film.add_sums(
-            Rect {
-                x: 4,
-                y: 1,
-                width: 1,
-                height: 1,
-            },
-            &[sum_record(sums)],
-        );
+        let mut film = Film::new(FilmSpec { unit_exponent: exponent, ..spec() });
+        film.add_sums(Rect { x: 4, y: 1, width: 1, height: 1 }, &[sum_record(sums)]);
         film.record(0..samples, 0, 0);
         film.resolve().pixels[0]
     };
     let one = 1i64 << 22;
-    assert_eq!(
-        resolved(0, 2, [3 * one, -one, 0, 2 * one]),
-        [1.5, -0.5, 0.0, 1.0]
-    );
-    assert_eq!(
-        resolved(3, 1, [one, 1, 0, 0]),
-        [8.0, 8.0 / one as f32, 0.0, 0.0]
-    );
-    assert_eq!(
-        resolved(-100, 1, [one, 0, 0, 0])[0],
-        f32::from_bits((127 - 100) << 23)
-    );
-    assert_eq!(
-        resolved(100, 1, [65_536 * one, 0, 0, 0])[0],
-        f32::from_bits((127 + 116) << 23)
-    );
-    assert_eq!(
-        resolved(0, 3, [one, 2 * one, 0, 0]),
-        [1.0 / 3.0, 2.0 / 3.0, 0.0, 0.0]
-    );
+    assert_eq!(resolved(0, 2, [3 * one, -one, 0, 2 * one]), [1.5, -0.5, 0.0, 1.0]);
+    assert_eq!(resolved(3, 1, [one, 1, 0, 0]), [8.0, 8.0 / one as f32, 0.0, 0.0]);
+    assert_eq!(resolved(-100, 1, [one, 0, 0, 0])[0], f32::from_bits((127 - 100) << 23));
+    assert_eq!(resolved(100, 1, [65_536 * one, 0, 0, 0])[0], f32::from_bits((127 + 116) << 23));
+    assert_eq!(resolved(0, 3, [one, 2 * one, 0, 0]), [1.0 / 3.0, 2.0 / 3.0, 0.0, 0.0]);
     assert_eq!(resolved(0, 0, [one; 4]), [0.0; 4]);
     // Auxiliary values keep their own scale whatever the unit.
-    let mut film = Film::new(FilmSpec {
-        unit_exponent: 5,
-        ..spec()
-    });
-    let up = AovPixel {
-        normal: sum_record([0, 2 * one, 0, 0]),
-        depth: 4.0,
-        ..AovPixel::default()
-    };
+    let mut film = Film::new(FilmSpec { unit_exponent: 5, ..spec() });
+    let up = AovPixel { normal: sum_record([0, 2 * one, 0, 0]), depth: 4.0, ..AovPixel::default() };
     film.add_aovs(film.crop(), &[up; PIXELS], true);
     film.record(0..2, 0, 0);
     let aovs = film.resolve_aovs().unwrap();
@@ -325,13 +247,9 @@ fn resolve_divides_by_the_samples_and_scales_by_the_unit() {
 fn the_hash_is_blake3_of_the_documented_bytes() {
     let film = film_of([0, 1, 5]);
     let mut bytes = b"gonio film 1".to_vec();
-    [8u32, 5, 4, 1, 3, 2]
-        .iter()
-        .for_each(|v| bytes.extend(v.to_le_bytes()));
+    [8u32, 5, 4, 1, 3, 2].iter().for_each(|v| bytes.extend(v.to_le_bytes()));
     bytes.extend(0i32.to_le_bytes());
-    [2u32, 0, 2, 5, 6]
-        .iter()
-        .for_each(|v| bytes.extend(v.to_le_bytes()));
+    [2u32, 0, 2, 5, 6].iter().for_each(|v| bytes.extend(v.to_le_bytes()));
     // nan: 0 % 3 + 1 % 3 + 5 % 3; clamped: 0 % 2 + 1 % 2 + 5 % 2
     [3u64, 2].iter().for_each(|v| bytes.extend(v.to_le_bytes()));
     for pixel in 0..PIXELS {
@@ -364,8 +282,5 @@ fn the_hash_sees_every_sum_count_and_scale_and_nothing_else() {
     assert_ne!(empty(|s| s.unit_exponent = 1), plain);
     assert_ne!(empty(|s| (s.crop.width, s.crop.height) = (2, 3)), plain);
     assert_ne!(empty(|s| s.crop.x = 0), plain);
-    assert_eq!(
-        empty(|s| (s.seed, s.scene_digest, s.exposure, s.aovs) = (1, [0; 32], 1.0, false)),
-        plain
-    );
+    assert_eq!(empty(|s| (s.seed, s.scene_digest, s.exposure, s.aovs) = (1, [0; 32], 1.0, false)), plain);
 }

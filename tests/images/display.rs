@@ -7,53 +7,27 @@ use gonio::film::display::{
 use gonio::scene::ToneMap;
 
 fn image(pixels: &[[f32; 4]]) -> Image {
-    Image {
-        width: pixels.len() as u32,
-        height: 1,
-        pixels: pixels.to_vec(),
-    }
+    Image { width: pixels.len() as u32, height: 1, pixels: pixels.to_vec() }
 }
 
 fn shown(tonemap: ToneMap, exposure: f32, pixels: &[[f32; 4]]) -> Vec<[f64; 4]> {
-    tone_map(
-        &image(pixels),
-        &Display {
-            tonemap,
-            exposure,
-            transparent: false,
-        },
-    )
+    tone_map(&image(pixels), &Display { tonemap, exposure, transparent: false })
 }
 
 #[test]
 fn clamp_keeps_light_up_to_one_after_exposure() {
     let pixels = [[0.25, 1.5, -2.0, 0.5], [f32::NAN, f32::INFINITY, 0.0, 0.0]];
-    assert_eq!(
-        shown(ToneMap::Clamp, 0.0, &pixels),
-        [[0.25, 1.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]
-    );
-    assert_eq!(
-        shown(ToneMap::Clamp, -1.0, &pixels)[0],
-        [0.125, 0.75, 0.0, 1.0]
-    );
+    assert_eq!(shown(ToneMap::Clamp, 0.0, &pixels), [[0.25, 1.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]);
+    assert_eq!(shown(ToneMap::Clamp, -1.0, &pixels)[0], [0.125, 0.75, 0.0, 1.0]);
     assert_eq!(shown(ToneMap::Clamp, 2.0, &pixels)[0], [1.0, 1.0, 0.0, 1.0]);
 }
 
 #[test]
 fn normalise_makes_the_largest_channel_two_to_the_exposure() {
     let pixels = [[1.0, 4.0, -8.0, 1.0], [2.0, 0.0, 3.0, 1.0]];
-    assert_eq!(
-        shown(ToneMap::Normalise, 0.0, &pixels),
-        [[0.25, 1.0, 0.0, 1.0], [0.5, 0.0, 0.75, 1.0]]
-    );
-    assert_eq!(
-        shown(ToneMap::Normalise, -1.0, &pixels)[0],
-        [0.125, 0.5, 0.0, 1.0]
-    );
-    assert_eq!(
-        shown(ToneMap::Normalise, 0.0, &[[0.0; 4]; 2]),
-        [[0.0, 0.0, 0.0, 1.0]; 2]
-    );
+    assert_eq!(shown(ToneMap::Normalise, 0.0, &pixels), [[0.25, 1.0, 0.0, 1.0], [0.5, 0.0, 0.75, 1.0]]);
+    assert_eq!(shown(ToneMap::Normalise, -1.0, &pixels)[0], [0.125, 0.5, 0.0, 1.0]);
+    assert_eq!(shown(ToneMap::Normalise, 0.0, &[[0.0; 4]; 2]), [[0.0, 0.0, 0.0, 1.0]; 2]);
 }
 
 #[test]
@@ -61,45 +35,24 @@ fn reinhard_maps_luminance_l_to_l_over_one_plus_l_and_keeps_the_hue() {
     for l in [0.0f32, 0.25, 1.0, 3.0, 1000.0] {
         let [r, g, b, _] = shown(ToneMap::Reinhard, 0.0, &[[l, l, l, 1.0]])[0];
         let expected = f64::from(l) / (1.0 + f64::from(l));
-        assert!(
-            (r - expected).abs() < 1e-12 && r == g && g == b,
-            "{l}: {r} {expected}"
-        );
+        assert!((r - expected).abs() < 1e-12 && r == g && g == b, "{l}: {r} {expected}");
     }
     let [r, g, _, _] = shown(ToneMap::Reinhard, 0.0, &[[0.5, 0.25, 0.125, 1.0]])[0];
     assert!((r / g - 2.0).abs() < 1e-12);
     // One stop doubles the light before the curve.
     assert!((shown(ToneMap::Reinhard, 1.0, &[[1.0; 4]])[0][0] - 2.0 / 3.0).abs() < 1e-12);
-    assert!(
-        shown(ToneMap::Reinhard, 0.0, &[[f32::INFINITY, 0.0, 0.0, 1.0]])[0]
-            .iter()
-            .all(|v| v.is_finite())
-    );
+    assert!(shown(ToneMap::Reinhard, 0.0, &[[f32::INFINITY, 0.0, 0.0, 1.0]])[0].iter().all(|v| v.is_finite()));
 }
 
 #[test]
 fn transparent_pictures_are_unpremultiplied_before_the_curve() {
-    let display = |tonemap| Display {
-        tonemap,
-        exposure: 0.0,
-        transparent: true,
-    };
-    let pixels = image(&[
-        [0.25, 0.5, 0.0, 0.5],
-        [0.5, 0.5, 0.5, 0.0],
-        [2.0, 0.0, 0.0, 1.0],
-    ]);
+    let display = |tonemap| Display { tonemap, exposure: 0.0, transparent: true };
+    let pixels = image(&[[0.25, 0.5, 0.0, 0.5], [0.5, 0.5, 0.5, 0.0], [2.0, 0.0, 0.0, 1.0]]);
     let clamped = tone_map(&pixels, &display(ToneMap::Clamp));
-    assert_eq!(
-        clamped,
-        [[0.5, 1.0, 0.0, 0.5], [0.0; 4], [1.0, 0.0, 0.0, 1.0]]
-    );
+    assert_eq!(clamped, [[0.5, 1.0, 0.0, 0.5], [0.0; 4], [1.0, 0.0, 0.0, 1.0]]);
     let normalised = tone_map(&pixels, &display(ToneMap::Normalise));
     assert_eq!(normalised[0], [0.25, 0.5, 0.0, 0.5]);
-    assert_eq!(
-        encode(&pixels, &display(ToneMap::Clamp), 255)[0],
-        [188, 255, 0, 128]
-    );
+    assert_eq!(encode(&pixels, &display(ToneMap::Clamp), 255)[0], [188, 255, 0, 128]);
 }
 
 #[test]
@@ -126,37 +79,17 @@ fn every_code_survives_linear_light() {
 
 #[test]
 fn quantising_rounds_to_the_nearest_code_and_saturates() {
-    let cases = [
-        (0.0, 0),
-        (1.0, 255),
-        (0.5, 128),
-        (0.499 / 255.0, 0),
-        (0.5 / 255.0, 1),
-        (-1.0, 0),
-        (7.0, 255),
-        (f64::NAN, 0),
-    ];
-    cases
-        .iter()
-        .for_each(|(value, code)| assert_eq!(quantise(*value, 255), *code, "{value}"));
+    let cases =
+        [(0.0, 0), (1.0, 255), (0.5, 128), (0.499 / 255.0, 0), (0.5 / 255.0, 1), (-1.0, 0), (7.0, 255), (f64::NAN, 0)];
+    cases.iter().for_each(|(value, code)| assert_eq!(quantise(*value, 255), *code, "{value}"));
 }
 
 #[test]
 fn displayed_codes_are_these_on_every_machine() {
-    let pixels: Vec<[f32; 4]> = (0..1 << 14)
-        .map(|i| [i as f32 / 16_000.0, i as f32 / 777.0, 0.01, 1.0])
-        .collect();
-    let display = Display {
-        tonemap: ToneMap::Reinhard,
-        exposure: 0.7,
-        transparent: false,
-    };
+    let pixels: Vec<[f32; 4]> = (0..1 << 14).map(|i| [i as f32 / 16_000.0, i as f32 / 777.0, 0.01, 1.0]).collect();
+    let display = Display { tonemap: ToneMap::Reinhard, exposure: 0.7, transparent: false };
     let codes = encode(&image(&pixels), &display, 65_535);
-    let bytes: Vec<u8> = codes
-        .iter()
-        .flatten()
-        .flat_map(|code| code.to_le_bytes())
-        .collect();
+    let bytes: Vec<u8> = codes.iter().flatten().flat_map(|code| code.to_le_bytes()).collect();
     assert_eq!(blake3::hash(&bytes).to_string()[..16], *"1c9b970472d80d58");
 }
 
@@ -165,8 +98,5 @@ fn tone_curves_are_known_by_the_names_they_have() {
     for curve in [ToneMap::Clamp, ToneMap::Normalise, ToneMap::Reinhard] {
         assert_eq!(tonemap_from_name(tonemap_name(curve)), Ok(curve));
     }
-    assert_eq!(
-        tonemap_from_name("aces").unwrap_err(),
-        "allowed: clamp, normalise, reinhard"
-    );
+    assert_eq!(tonemap_from_name("aces").unwrap_err(), "allowed: clamp, normalise, reinhard");
 }

@@ -22,24 +22,14 @@ fn the_same_film_gives_the_same_bytes_in_every_format() {
 
 #[test]
 fn png_is_tagged_and_says_where_it_came_from() {
-    let film = film_of(4, &ramp(4, 2), |s| {
-        s.scene_name = "Kugel \u{2603}.toml".into()
-    });
+    let film = film_of(4, &ramp(4, 2), |s| s.scene_name = "Kugel \u{2603}.toml".into());
     let bytes = encode(&film, Format::Png, false);
     let reader = png::Decoder::new(Cursor::new(&bytes)).read_info().unwrap();
     let info = reader.info();
     assert_eq!((info.width, info.height), (4, 2));
-    assert_eq!(
-        (info.color_type, info.bit_depth),
-        (png::ColorType::Rgb, png::BitDepth::Eight)
-    );
+    assert_eq!((info.color_type, info.bit_depth), (png::ColorType::Rgb, png::BitDepth::Eight));
     assert_eq!(info.srgb, Some(png::SrgbRenderingIntent::Perceptual));
-    let text = |key: &str| {
-        info.uncompressed_latin1_text
-            .iter()
-            .find(|t| t.keyword == key)
-            .map(|t| t.text.clone())
-    };
+    let text = |key: &str| info.uncompressed_latin1_text.iter().find(|t| t.keyword == key).map(|t| t.text.clone());
     assert_eq!(text("Film-Hash"), Some(film.hash().to_string()));
     assert_eq!(text("Samples"), Some("0..1".into()));
     assert_eq!(text("Seed"), Some("42".into()));
@@ -47,40 +37,19 @@ fn png_is_tagged_and_says_where_it_came_from() {
     assert_eq!(text("Software"), Some("gonio 0.1.0".into()));
     assert_eq!(text("Scene-Digest"), Some("03".repeat(32)));
     let scene = &info.utf8_text[0];
-    assert_eq!(
-        (scene.keyword.as_str(), scene.get_text().unwrap().as_str()),
-        ("Scene", "Kugel \u{2603}.toml")
-    );
+    assert_eq!((scene.keyword.as_str(), scene.get_text().unwrap().as_str()), ("Scene", "Kugel \u{2603}.toml"));
 }
 
 #[test]
 fn png_holds_the_displayed_codes_in_8_and_16_bits() {
     let pixels = [[0.0, 0.5, 1.0, 0.25], [0.25, 9.0, -1.0, 0.5]];
     let opaque = film_of(2, &pixels, |_| {});
-    let codes = read(&encode(&opaque, Format::Png, false))
-        .unwrap()
-        .codes
-        .unwrap();
-    assert_eq!(
-        (codes.bits, codes.pixels),
-        (8, vec![[0, 188, 255, 255], [137, 255, 0, 255]])
-    );
-    let codes = read(&encode(&opaque, Format::Png, true))
-        .unwrap()
-        .codes
-        .unwrap();
-    assert_eq!(
-        (codes.bits, codes.pixels),
-        (
-            16,
-            vec![[0, 48_192, 65_535, 65_535], [35_199, 65_535, 0, 65_535]]
-        )
-    );
+    let codes = read(&encode(&opaque, Format::Png, false)).unwrap().codes.unwrap();
+    assert_eq!((codes.bits, codes.pixels), (8, vec![[0, 188, 255, 255], [137, 255, 0, 255]]));
+    let codes = read(&encode(&opaque, Format::Png, true)).unwrap().codes.unwrap();
+    assert_eq!((codes.bits, codes.pixels), (16, vec![[0, 48_192, 65_535, 65_535], [35_199, 65_535, 0, 65_535]]));
     let transparent = film_of(2, &pixels, |s| s.transparent = true);
-    let codes = read(&encode(&transparent, Format::Png, false))
-        .unwrap()
-        .codes
-        .unwrap();
+    let codes = read(&encode(&transparent, Format::Png, false)).unwrap().codes.unwrap();
     assert_eq!(codes.pixels, [[0, 255, 255, 64], [188, 255, 0, 128]]);
 }
 
@@ -89,16 +58,11 @@ fn exr_keeps_every_bit_and_its_place_in_the_frame() {
     for transparent in [false, true] {
         let mut pixels = ramp(40, 70);
         pixels[3] = [-0.25, 65_536.0, 1.0 / 4_194_304.0, 0.5];
-        let film = film_of(40, &pixels, |s| {
-            (s.transparent, s.aovs) = (transparent, true)
-        });
+        let film = film_of(40, &pixels, |s| (s.transparent, s.aovs) = (transparent, true));
         let bytes = encode(&film, Format::Exr, false);
         let read = read(&bytes).unwrap();
         let alpha = |pixel: &[f32; 4]| if transparent { pixel[3] } else { 1.0 };
-        let expected: Vec<[f32; 4]> = pixels
-            .iter()
-            .map(|p| [p[0], p[1], p[2], alpha(p)])
-            .collect();
+        let expected: Vec<[f32; 4]> = pixels.iter().map(|p| [p[0], p[1], p[2], alpha(p)]).collect();
         assert_eq!(read.image.pixels, expected);
         assert_eq!((read.image.width, read.image.height), (40, 70));
 
@@ -106,31 +70,15 @@ fn exr_keeps_every_bit_and_its_place_in_the_frame() {
         let header = &meta.headers[0];
         let window = header.shared_attributes.display_window;
         assert_eq!((window.size.0, window.size.1), (43, 75));
-        assert_eq!(
-            (
-                header.own_attributes.layer_position.0,
-                header.own_attributes.layer_position.1
-            ),
-            (2, 1)
-        );
-        let names: Vec<String> = header
-            .channels
-            .list
-            .iter()
-            .map(|c| c.name.to_string())
-            .collect();
-        let expected = "A B G R albedo.B albedo.G albedo.R depth.Z material.id normal.X normal.Y normal.Z object.id samples";
+        assert_eq!((header.own_attributes.layer_position.0, header.own_attributes.layer_position.1), (2, 1));
+        let names: Vec<String> = header.channels.list.iter().map(|c| c.name.to_string()).collect();
+        let expected =
+            "A B G R albedo.B albedo.G albedo.R depth.Z material.id normal.X normal.Y normal.Z object.id samples";
         assert_eq!(names.join(" "), expected);
         let hash = &header.own_attributes.other[&exr::meta::attribute::Text::from("filmHash")];
-        assert_eq!(
-            hash,
-            &exr::prelude::AttributeValue::Text(film.hash().to_string().as_str().into())
-        );
+        assert_eq!(hash, &exr::prelude::AttributeValue::Text(film.hash().to_string().as_str().into()));
         let comments = header.own_attributes.comments.as_ref().unwrap().to_string();
-        assert!(
-            comments.contains("Seed: 42\n") && comments.contains("Scene: spheres.toml\n"),
-            "{comments}"
-        );
+        assert!(comments.contains("Seed: 42\n") && comments.contains("Scene: spheres.toml\n"), "{comments}");
     }
 }
 
@@ -149,16 +97,10 @@ fn exr_layers_hold_the_auxiliary_values() {
         .unwrap();
     let channel = |name: &str| {
         let list = &image.layer_data.channel_data.list;
-        list.iter()
-            .find(|c| c.name.eq(name))
-            .map(|c| c.sample_data.clone())
-            .unwrap()
+        list.iter().find(|c| c.name.eq(name)).map(|c| c.sample_data.clone()).unwrap()
     };
     let ids: Vec<u32> = (0..8).collect();
-    assert_eq!(
-        channel("depth.Z"),
-        FlatSamples::F32(ids.iter().map(|i| *i as f32).collect())
-    );
+    assert_eq!(channel("depth.Z"), FlatSamples::F32(ids.iter().map(|i| *i as f32).collect()));
     assert_eq!(channel("object.id"), FlatSamples::U32(ids));
     assert_eq!(channel("material.id"), FlatSamples::U32(vec![7; 8]));
     assert_eq!(channel("samples"), FlatSamples::U32(vec![1; 8]));
@@ -184,10 +126,7 @@ fn hdr_keeps_light_to_half_a_mantissa_step() {
             let largest = wrote[..3].iter().fold(0.0f32, |a, b| a.max(*b));
             for (read, wrote) in read[..3].iter().zip(&wrote[..3]) {
                 // A mantissa of at least 128 means half a step is at most 1/256 of the largest channel.
-                assert!(
-                    (read - wrote.max(0.0)).abs() <= largest / 256.0,
-                    "{read} {wrote}"
-                );
+                assert!((read - wrote.max(0.0)).abs() <= largest / 256.0, "{read} {wrote}");
             }
         }
     }
@@ -195,26 +134,13 @@ fn hdr_keeps_light_to_half_a_mantissa_step() {
 
 /// An EXR of one row of three pixels with these channels, the values of channel i being 10 i + 1, 2, 3.
 fn exr_with(names: &[&str]) -> Vec<u8> {
-    use exr::prelude::{
-        AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, WritableImage,
-    };
+    use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, WritableImage};
     let samples = |i: usize| FlatSamples::F32((1..4).map(|k| (10 * i + k) as f32).collect());
-    let channels = names
-        .iter()
-        .enumerate()
-        .map(|(i, name)| AnyChannel::new(*name, samples(i)));
+    let channels = names.iter().enumerate().map(|(i, name)| AnyChannel::new(*name, samples(i)));
     let channels = AnyChannels::sort(channels.collect());
-    let layer = Layer::new(
-        (3, 1),
-        LayerAttributes::default(),
-        Encoding::UNCOMPRESSED,
-        channels,
-    );
+    let layer = Layer::new((3, 1), LayerAttributes::default(), Encoding::UNCOMPRESSED, channels);
     let mut bytes = Cursor::new(Vec::new());
-    exr::prelude::Image::from_layer(layer)
-        .write()
-        .to_buffered(&mut bytes)
-        .unwrap();
+    exr::prelude::Image::from_layer(layer).write().to_buffered(&mut bytes).unwrap();
     bytes.into_inner()
 }
 
@@ -228,10 +154,7 @@ fn exr_colours_that_are_absent_are_black_and_luminance_is_grey() {
     assert_eq!(second(&["B", "Z"]), [0.0, 0.0, 2.0, 1.0]);
     assert_eq!(second(&["Y", "A"]), [2.0, 2.0, 2.0, 12.0]);
     let error = read(&exr_with(&["Z"])).unwrap_err().to_string();
-    assert!(
-        error.contains("no part of this EXR has channels R, G, B or Y"),
-        "{error}"
-    );
+    assert!(error.contains("no part of this EXR has channels R, G, B or Y"), "{error}");
 }
 
 #[test]
@@ -239,10 +162,7 @@ fn an_opaque_film_file_shows_no_coverage() {
     let pixels = [[0.5, 0.5, 0.5, 0.25]];
     let alpha = |transparent: bool| {
         let film = film_of(1, &pixels, |s| s.transparent = transparent);
-        read(&encode(&film, Format::Gfilm, false))
-            .unwrap()
-            .image
-            .pixels[0][3]
+        read(&encode(&film, Format::Gfilm, false)).unwrap().image.pixels[0][3]
     };
     assert_eq!((alpha(false), alpha(true)), (1.0, 0.25));
 }
@@ -264,10 +184,7 @@ fn a_film_file_reads_as_its_picture() {
     let pixels = ramp(4, 2);
     let film = film_of(4, &pixels, |s: &mut FilmSpec| s.transparent = true);
     let read = read(&encode(&film, Format::Gfilm, false)).unwrap();
-    assert_eq!(
-        (read.image.pixels, read.film_hash),
-        (pixels, Some(film.hash()))
-    );
+    assert_eq!((read.image.pixels, read.film_hash), (pixels, Some(film.hash())));
 }
 
 #[test]
@@ -281,25 +198,14 @@ fn formats_are_known_by_their_extensions() {
     ] {
         assert_eq!(Format::of(Path::new(name)).unwrap(), format);
     }
-    for (name, found) in [
-        ("a.jpg", "unknown extension .jpg"),
-        ("picture", "no extension"),
-    ] {
+    for (name, found) in [("a.jpg", "unknown extension .jpg"), ("picture", "no extension")] {
         let error = Format::of(Path::new(name)).unwrap_err();
         assert_eq!(error.exit_code(), 2);
-        assert_eq!(
-            error.to_string(),
-            format!("{name}: {found}; allowed: .png, .exr, .hdr, .gfilm")
-        );
+        assert_eq!(error.to_string(), format!("{name}: {found}; allowed: .png, .exr, .hdr, .gfilm"));
     }
     assert!(Format::Exr.has_layers() && Format::Gfilm.has_layers() && !Format::Png.has_layers());
     assert_eq!("depth".parse::<Aov>(), Ok(Aov::Depth));
-    assert!(
-        "colour"
-            .parse::<Aov>()
-            .unwrap_err()
-            .starts_with("allowed: depth, normal")
-    );
+    assert!("colour".parse::<Aov>().unwrap_err().starts_with("allowed: depth, normal"));
 }
 
 #[test]
@@ -309,29 +215,17 @@ fn damaged_pictures_are_bad_and_never_a_panic() {
         let good = encode(&film, format, false);
         // The last 16 bytes of a PNG hold no pixels.
         for end in [0, 1, 8, 15, 16, 40, good.len() / 2, good.len() - 30] {
-            let Err(error) = read(&good[..end]) else {
-                panic!("{format:?} of {end} bytes was read")
-            };
+            let Err(error) = read(&good[..end]) else { panic!("{format:?} of {end} bytes was read") };
             assert_eq!(error.exit_code(), 65, "{error}");
             assert!(error.to_string().starts_with("a: "), "{error}");
         }
     }
-    assert!(
-        read(b"hello, world, this is text")
-            .unwrap_err()
-            .to_string()
-            .contains("not a PNG, JPEG")
-    );
+    assert!(read(b"hello, world, this is text").unwrap_err().to_string().contains("not a PNG, JPEG"));
 }
 
 #[test]
 fn an_endless_stream_of_something_else_ends() {
-    assert_eq!(
-        read_picture_from(Path::new("-"), std::io::repeat(0))
-            .unwrap_err()
-            .exit_code(),
-        65
-    );
+    assert_eq!(read_picture_from(Path::new("-"), std::io::repeat(0)).unwrap_err().exit_code(), 65);
 }
 
 #[test]
@@ -354,18 +248,10 @@ fn an_exr_that_claims_a_huge_picture_is_refused_before_memory_is_taken() {
 #[test]
 fn files_that_cannot_be_read_are_named() {
     let folder = tempfile::tempdir().unwrap();
-    for path in [
-        folder.path().to_path_buf(),
-        folder.path().join("missing.png"),
-    ] {
+    for path in [folder.path().to_path_buf(), folder.path().join("missing.png")] {
         let error = read_picture(&path).unwrap_err();
         assert_eq!(error.exit_code(), 74);
-        assert!(
-            error
-                .to_string()
-                .starts_with(&format!("cannot read {}: ", path.display())),
-            "{error}"
-        );
+        assert!(error.to_string().starts_with(&format!("cannot read {}: ", path.display())), "{error}");
     }
 }
 
@@ -399,10 +285,7 @@ fn exr_files_of_other_programs_are_read() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|e| e == "exr") {
             let picture = read_picture(&path).unwrap_or_else(|e| panic!("{e}"));
-            assert_eq!(
-                picture.image.pixels.len(),
-                (picture.image.width * picture.image.height) as usize
-            );
+            assert_eq!(picture.image.pixels.len(), (picture.image.width * picture.image.height) as usize);
             read += 1;
         }
     }

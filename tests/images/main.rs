@@ -17,12 +17,7 @@ fn film_of(width: u32, pixels: &[[f32; 4]], change: impl Fn(&mut FilmSpec)) -> F
     let mut spec = FilmSpec {
         width: width + 3,
         height: height + 5,
-        crop: Rect {
-            x: 2,
-            y: 1,
-            width,
-            height,
-        },
+        crop: Rect { x: 2, y: 1, width, height },
         unit_exponent: 0,
         seed: 42,
         scene_digest: [3; 32],
@@ -37,10 +32,7 @@ fn film_of(width: u32, pixels: &[[f32; 4]], change: impl Fn(&mut FilmSpec)) -> F
     change(&mut spec);
     let mut film = Film::new(spec);
     let fixed = |v: f32| (f64::from(v) * f64::from(1 << 22)) as i64;
-    let sums: Vec<_> = pixels
-        .iter()
-        .map(|pixel| sum_record(pixel.map(fixed)))
-        .collect();
+    let sums: Vec<_> = pixels.iter().map(|pixel| sum_record(pixel.map(fixed))).collect();
     film.add_sums(film.crop(), &sums);
     if film.spec().aovs {
         let aov = |i: usize| AovPixel {
@@ -61,28 +53,19 @@ fn film_of(width: u32, pixels: &[[f32; 4]], change: impl Fn(&mut FilmSpec)) -> F
 /// Pixels of many magnitudes, none of them negative.
 fn ramp(width: u32, height: u32) -> Vec<[f32; 4]> {
     let value = |i: u32| (i * i % 4093) as f32 / 1024.0;
-    (0..width * height)
-        .map(|i| [value(i), value(3 * i + 1), value(7 * i + 2), 1.0])
-        .collect()
+    (0..width * height).map(|i| [value(i), value(3 * i + 1), value(7 * i + 2), 1.0]).collect()
 }
 
 fn encode(film: &Film, format: Format, sixteen_bit: bool) -> Vec<u8> {
     let aovs = Aov::ALL.map(|(_, aov)| aov);
     let mut bytes = Vec::new();
-    Picture {
-        format,
-        sixteen_bit,
-        aovs: &aovs,
-    }
-    .write_to(film, &mut bytes)
-    .unwrap();
+    Picture { format, sixteen_bit, aovs: &aovs }.write_to(film, &mut bytes).unwrap();
     bytes
 }
 
 /// The folder of third-party test files, if it is there.
 fn assets() -> Option<PathBuf> {
-    let folder =
-        std::env::var_os("GONIO_ASSETS").map_or_else(|| "../shared/assets".into(), PathBuf::from);
+    let folder = std::env::var_os("GONIO_ASSETS").map_or_else(|| "../shared/assets".into(), PathBuf::from);
     if folder.is_dir() {
         return Some(folder);
     }

@@ -9,10 +9,8 @@ use std::io::Write;
 use std::path::Path;
 
 fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .unwrap()
-        .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
-        .collect();
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
     names.sort();
     names
 }
@@ -25,11 +23,7 @@ fn a_committed_file_has_its_name_and_leaves_nothing_else() {
     let film = film_of(4, &ramp(4, 2), |_| {});
     let mut file = OutputFile::open(&path).unwrap();
     assert_eq!(names(folder.path()).len(), 2);
-    let picture = Picture {
-        format: Format::Gfilm,
-        sixteen_bit: false,
-        aovs: &[],
-    };
+    let picture = Picture { format: Format::Gfilm, sixteen_bit: false, aovs: &[] };
     picture.write(&film, &mut file).unwrap();
     assert_eq!(fs::read(&path).unwrap(), b"before");
     file.commit().unwrap();
@@ -78,10 +72,7 @@ fn what_appeared_under_the_name_meanwhile_is_not_replaced_unless_it_is_a_file() 
 fn two_runs_to_one_name_do_not_mix() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");
-    let (mut a, mut b) = (
-        OutputFile::open(&path).unwrap(),
-        OutputFile::open(&path).unwrap(),
-    );
+    let (mut a, mut b) = (OutputFile::open(&path).unwrap(), OutputFile::open(&path).unwrap());
     a.write_all(b"aaaa").unwrap();
     b.write_all(b"b").unwrap();
     b.commit().unwrap();
@@ -109,10 +100,7 @@ fn bad_paths_are_refused_before_the_work_starts() {
         let error = OutputFile::open(&path).unwrap_err();
         assert_eq!(error.exit_code(), 74);
         let message = error.to_string();
-        assert!(
-            message.starts_with(&format!("cannot write {}: ", path.display())),
-            "{message}"
-        );
+        assert!(message.starts_with(&format!("cannot write {}: ", path.display())), "{message}");
         assert!(message.contains(reason), "{message}");
     }
     assert_eq!(fs::read(&read_only).unwrap(), b"kept");
@@ -125,10 +113,7 @@ fn a_link_stays_a_link_and_permissions_stay() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("real")).unwrap();
-    let (target, link) = (
-        folder.path().join("real/a.png"),
-        folder.path().join("link.png"),
-    );
+    let (target, link) = (folder.path().join("real/a.png"), folder.path().join("link.png"));
     fs::write(&target, "before").unwrap();
     fs::set_permissions(&target, fs::Permissions::from_mode(0o640)).unwrap();
     symlink("real/a.png", &link).unwrap();
@@ -139,10 +124,7 @@ fn a_link_stays_a_link_and_permissions_stay() {
     };
     write(&link, "after");
     assert_eq!(fs::read(&target).unwrap(), b"after");
-    assert_eq!(
-        fs::metadata(&target).unwrap().permissions().mode() & 0o777,
-        0o640
-    );
+    assert_eq!(fs::metadata(&target).unwrap().permissions().mode() & 0o777, 0o640);
     // A link to what is not there yet makes it.
     let dangling = folder.path().join("dangling.png");
     symlink("real/b.png", &dangling).unwrap();
@@ -158,13 +140,7 @@ fn a_link_stays_a_link_and_permissions_stay() {
 #[cfg(unix)]
 fn named_pipe(folder: &Path) -> std::path::PathBuf {
     let path = folder.join("pipe.gfilm");
-    assert!(
-        std::process::Command::new("mkfifo")
-            .arg(&path)
-            .status()
-            .unwrap()
-            .success()
-    );
+    assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
     path
 }
 
@@ -184,17 +160,11 @@ fn what_is_no_regular_file_is_written_to_and_stays() {
     std::thread::spawn(move || sender.send(fs::read(reader).unwrap()));
     let film = film_of(64, &ramp(64, 64), |_| {});
     let mut file = OutputFile::open(&path).unwrap();
-    let picture = Picture {
-        format: Format::Gfilm,
-        sixteen_bit: false,
-        aovs: &[],
-    };
+    let picture = Picture { format: Format::Gfilm, sixteen_bit: false, aovs: &[] };
     picture.write(&film, &mut file).unwrap();
     file.commit().unwrap();
     // A time limit: what was renamed away never ends the reader's wait.
-    let bytes = receiver
-        .recv_timeout(std::time::Duration::from_secs(10))
-        .unwrap();
+    let bytes = receiver.recv_timeout(std::time::Duration::from_secs(10)).unwrap();
     assert_eq!(bytes, crate::encode(&film, Format::Gfilm, false));
     assert!(is_pipe(&path));
     assert_eq!(names(folder.path()), ["pipe.gfilm"]);
@@ -209,17 +179,10 @@ fn an_error_that_shows_only_when_the_buffer_is_emptied_is_reported() {
     let reader = path.clone();
     std::thread::spawn(move || sender.send(drop(fs::File::open(reader).unwrap())));
     let mut file = OutputFile::open(&path).unwrap();
-    receiver
-        .recv_timeout(std::time::Duration::from_secs(10))
-        .unwrap();
+    receiver.recv_timeout(std::time::Duration::from_secs(10)).unwrap();
     // Nobody reads any more, but so little stays in the buffer until the end.
     file.write_all(b"few bytes").unwrap();
     let error = file.commit().unwrap_err();
     assert_eq!(error.exit_code(), 74);
-    assert!(
-        error
-            .to_string()
-            .starts_with(&format!("cannot write {}: ", path.display())),
-        "{error}"
-    );
+    assert!(error.to_string().starts_with(&format!("cannot write {}: ", path.display())), "{error}");
 }

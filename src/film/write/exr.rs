@@ -3,8 +3,8 @@
 use super::{Aov, Film, facts};
 use crate::film::Aovs;
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image,
-    ImageAttributes, IntegerBounds, Layer, LayerAttributes, LineOrder, Text, Vec2, WritableImage,
+    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds,
+    Layer, LayerAttributes, LineOrder, Text, Vec2, WritableImage,
 };
 use std::io::{self, Cursor, Write};
 
@@ -14,8 +14,7 @@ use std::io::{self, Cursor, Write};
 pub fn write(film: &Film, wanted: &[Aov], out: &mut dyn Write) -> io::Result<()> {
     let spec = film.spec();
     let image = film.resolve();
-    let plane =
-        |lane: usize| FlatSamples::F32(image.pixels.iter().map(|pixel| pixel[lane]).collect());
+    let plane = |lane: usize| FlatSamples::F32(image.pixels.iter().map(|pixel| pixel[lane]).collect());
     let alpha = match spec.transparent {
         true => plane(3),
         false => FlatSamples::F32(vec![1.0; image.pixels.len()]),
@@ -34,23 +33,12 @@ pub fn write(film: &Film, wanted: &[Aov], out: &mut dyn Write) -> io::Result<()>
     let mut attributes = LayerAttributes::default();
     attributes.layer_position = Vec2(spec.crop.x as i32, spec.crop.y as i32);
     let facts = facts(film);
-    let value = |key: &str| {
-        facts
-            .iter()
-            .find(|(k, _)| *k == key)
-            .map_or("", |(_, v)| v.as_str())
-    };
+    let value = |key: &str| facts.iter().find(|(k, _)| *k == key).map_or("", |(_, v)| v.as_str());
     attributes.software_name = Some(text(value("Software")));
-    let lines: Vec<String> = facts[1..]
-        .iter()
-        .map(|(key, value)| format!("{key}: {value}"))
-        .collect();
+    let lines: Vec<String> = facts[1..].iter().map(|(key, value)| format!("{key}: {value}")).collect();
     attributes.comments = Some(text(&lines.join("\n")));
     // One custom attribute only: the crate writes them in the order of a hash map, which changes from run to run.
-    attributes.other.insert(
-        text("filmHash"),
-        AttributeValue::Text(text(value("Film-Hash"))),
-    );
+    attributes.other.insert(text("filmHash"), AttributeValue::Text(text(value("Film-Hash"))));
     let frame = IntegerBounds::from_dimensions(Vec2(spec.width as usize, spec.height as usize));
 
     let encoding = Encoding {
@@ -59,41 +47,27 @@ pub fn write(film: &Film, wanted: &[Aov], out: &mut dyn Write) -> io::Result<()>
         line_order: LineOrder::Increasing,
     };
     let size = Vec2(image.width as usize, image.height as usize);
-    let layer = Layer::new(
-        size,
-        attributes,
-        encoding,
-        AnyChannels::sort(channels.into_iter().collect()),
-    );
+    let layer = Layer::new(size, attributes, encoding, AnyChannels::sort(channels.into_iter().collect()));
     let mut picture = Image::from_layer(layer);
     picture.attributes = ImageAttributes::new(frame);
 
     // The offset table is filled in last: it needs a seekable place, which a stream is not.
     let mut bytes = Cursor::new(Vec::new());
-    picture
-        .write()
-        .to_buffered(&mut bytes)
-        .map_err(|error| match error {
-            exr::error::Error::Io(error) => error,
-            other => io::Error::other(other.to_string()),
-        })?;
+    picture.write().to_buffered(&mut bytes).map_err(|error| match error {
+        exr::error::Error::Io(error) => error,
+        other => io::Error::other(other.to_string()),
+    })?;
     out.write_all(bytes.get_ref())
 }
 
-fn add_aov(
-    channels: &mut Vec<AnyChannel<FlatSamples>>,
-    film: &Film,
-    aovs: Option<&Aovs>,
-    aov: Aov,
-) {
+fn add_aov(channels: &mut Vec<AnyChannel<FlatSamples>>, film: &Film, aovs: Option<&Aovs>, aov: Aov) {
     let mut add = |name: &str, samples: FlatSamples| channels.push(AnyChannel::new(name, samples));
     if aov == Aov::Samples {
         let count = film.samples().total() as u32;
         return add("samples", FlatSamples::U32(vec![count; film.crop().area()]));
     }
     let Some(aovs) = aovs else { return };
-    let lane =
-        |plane: &[[f32; 3]], i: usize| FlatSamples::F32(plane.iter().map(|v| v[i]).collect());
+    let lane = |plane: &[[f32; 3]], i: usize| FlatSamples::F32(plane.iter().map(|v| v[i]).collect());
     match aov {
         Aov::Depth => add("depth.Z", FlatSamples::F32(aovs.depth.clone())),
         Aov::Normal => ["normal.X", "normal.Y", "normal.Z"]
@@ -112,9 +86,6 @@ fn add_aov(
 
 /// EXR text is Latin-1: other characters become `?`.
 fn text(value: &str) -> Text {
-    let latin: String = value
-        .chars()
-        .map(|c| if u32::from(c) < 256 { c } else { '?' })
-        .collect();
+    let latin: String = value.chars().map(|c| if u32::from(c) < 256 { c } else { '?' }).collect();
     Text::new_or_none(latin).unwrap_or_default()
 }

@@ -16,11 +16,7 @@ pub fn write(film: &Film, out: &mut dyn Write) -> io::Result<()> {
         // A line break in a name would end the comment.
         writeln!(out, "# {key}: {}", value.replace(['\n', '\r'], " "))?;
     }
-    write!(
-        out,
-        "FORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n",
-        image.height, image.width
-    )?;
+    write!(out, "FORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width)?;
     let width = image.width as usize;
     let mut bytes = Vec::new();
     for row in image.pixels.chunks_exact(width) {
@@ -65,13 +61,7 @@ pub fn rgbe(rgb: [f32; 3]) -> [u8; 4] {
 fn run_lengths(values: &[u8], out: &mut Vec<u8>) {
     /// Shorter runs cost more than they save.
     const MIN_RUN: usize = 4;
-    let run_at = |i: usize| {
-        values[i..]
-            .iter()
-            .take(127)
-            .take_while(|v| **v == values[i])
-            .count()
-    };
+    let run_at = |i: usize| values[i..].iter().take(127).take_while(|v| **v == values[i]).count();
     let mut i = 0;
     while i < values.len() {
         let run = run_at(i);

@@ -47,12 +47,9 @@ impl Format {
             Some(extension) => format!("unknown extension .{extension}"),
             None => "no extension".into(),
         };
-        extension.and_then(|e| Self::from_name(&e)).ok_or_else(|| {
-            FilmError::Usage(format!(
-                "{}: {found}; allowed: .png, .exr, .hdr, .gfilm",
-                path.display()
-            ))
-        })
+        extension
+            .and_then(|e| Self::from_name(&e))
+            .ok_or_else(|| FilmError::Usage(format!("{}: {found}; allowed: .png, .exr, .hdr, .gfilm", path.display())))
     }
 
     /// Whether files of this format can hold auxiliary values.
@@ -89,9 +86,7 @@ impl FromStr for Aov {
     /// An error names what is allowed.
     fn from_str(name: &str) -> Result<Self, String> {
         let named = Self::ALL.iter().find(|(n, _)| *n == name);
-        named
-            .map(|(_, aov)| *aov)
-            .ok_or_else(|| "allowed: depth, normal, albedo, object, material, samples".into())
+        named.map(|(_, aov)| *aov).ok_or_else(|| "allowed: depth, normal, albedo, object, material, samples".into())
     }
 }
 
@@ -133,9 +128,6 @@ fn facts(film: &Film) -> [(&'static str, String); 7] {
         ("Seed", spec.seed.to_string()),
         ("Integrator", spec.integrator.clone()),
         ("Scene", spec.scene_name.clone()),
-        (
-            "Scene-Digest",
-            blake3::Hash::from(spec.scene_digest).to_string(),
-        ),
+        ("Scene-Digest", blake3::Hash::from(spec.scene_digest).to_string()),
     ]
 }

@@ -8,21 +8,11 @@ use std::io::{self, Write};
 /// The displayed film, 8 or 16 bits, tagged sRGB, with the facts as text.
 pub fn write(film: &Film, sixteen_bit: bool, out: &mut dyn Write) -> io::Result<()> {
     let image = film.resolve();
-    let (bits, max) = if sixteen_bit {
-        (BitDepth::Sixteen, 65_535)
-    } else {
-        (BitDepth::Eight, 255)
-    };
+    let (bits, max) = if sixteen_bit { (BitDepth::Sixteen, 65_535) } else { (BitDepth::Eight, 255) };
     let display = film.spec().display();
-    let (color, channels) = if display.transparent {
-        (ColorType::Rgba, 4)
-    } else {
-        (ColorType::Rgb, 3)
-    };
+    let (color, channels) = if display.transparent { (ColorType::Rgba, 4) } else { (ColorType::Rgb, 3) };
     let integers = encode(&image, &display, max);
-    let values = integers
-        .iter()
-        .flat_map(|pixel| pixel[..channels].iter().copied());
+    let values = integers.iter().flat_map(|pixel| pixel[..channels].iter().copied());
     let bytes: Vec<u8> = match sixteen_bit {
         false => values.map(|v| v as u8).collect(),
         true => values.flat_map(u16::to_be_bytes).collect(),

@@ -149,10 +149,12 @@ impl Renderer for CpuRenderer<'_> {
         };
         self.pool.install(|| {
             if want_aovs {
-                sums.par_chunks_mut(tile).zip(aovs.par_chunks_mut(tile)).enumerate().for_each_init(
-                    Worker::default,
-                    |worker, (index, (sums, aovs))| run_tile(worker, index * tile, sums, Some(aovs)),
-                );
+                sums.par_chunks_mut(tile)
+                    .zip(aovs.par_chunks_mut(tile))
+                    .enumerate()
+                    .for_each_init(Worker::default, |worker, (index, (sums, aovs))| {
+                        run_tile(worker, index * tile, sums, Some(aovs))
+                    });
             } else {
                 sums.par_chunks_mut(tile)
                     .enumerate()

@@ -23,31 +23,14 @@ impl Bounds {
             add_points(scene, object, &mut points);
         }
         points.retain(|p| p.is_finite());
-        let low = points
-            .iter()
-            .copied()
-            .reduce(DVec3::min)
-            .unwrap_or(DVec3::ZERO);
-        let high = points
-            .iter()
-            .copied()
-            .reduce(DVec3::max)
-            .unwrap_or(DVec3::ZERO);
+        let low = points.iter().copied().reduce(DVec3::min).unwrap_or(DVec3::ZERO);
+        let high = points.iter().copied().reduce(DVec3::max).unwrap_or(DVec3::ZERO);
         let centre = (low + high) * 0.5;
-        let radius = points
-            .iter()
-            .map(|p| (*p - centre).length())
-            .fold(0.0, f64::max);
+        let radius = points.iter().map(|p| (*p - centre).length()).fold(0.0, f64::max);
         // What is smaller than the rounding of its place cannot be looked at from its own distance; a single point has none.
         let radius = radius.max(centre.abs().max_element() * 1e-5);
         let radius = if radius > 0.0 { radius } else { 1.0 };
-        Self {
-            points,
-            low,
-            high,
-            radius,
-            volume: signed_volume(scene, centre),
-        }
+        Self { points, low, high, radius, volume: signed_volume(scene, centre) }
     }
 
     pub fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
@@ -74,8 +57,7 @@ impl Bounds {
     /// Walls that face inwards enclose a negative volume; an object's faces a positive one.
     pub fn is_room(&self) -> bool {
         let size = self.size();
-        self.volume < -0.2 * (size.x * size.y * size.z)
-            && size.min_element() > 0.05 * size.max_element()
+        self.volume < -0.2 * (size.x * size.y * size.z) && size.min_element() > 0.05 * size.max_element()
     }
 
     /// Objects stand on something; landscapes are ground, and pictures hang.
@@ -90,11 +72,7 @@ fn add_points(scene: &Scene, object: &Object, points: &mut Vec<DVec3>) {
     let corners = |low: DVec3, high: DVec3| {
         (0..8).map(move |i| {
             let pick = |axis: u32, l: f64, h: f64| if i >> axis & 1 == 0 { l } else { h };
-            DVec3::new(
-                pick(0, low.x, high.x),
-                pick(1, low.y, high.y),
-                pick(2, low.z, high.z),
-            )
+            DVec3::new(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z))
         })
     };
     match object.geometry {
@@ -105,8 +83,7 @@ fn add_points(scene: &Scene, object: &Object, points: &mut Vec<DVec3>) {
             if points.len() + positions.len() <= EXACT_MAX {
                 points.extend(local.map(world));
             } else if let Some(first) = local.next() {
-                let (low, high) =
-                    local.fold((first, first), |(low, high), p| (low.min(p), high.max(p)));
+                let (low, high) = local.fold((first, first), |(low, high), p| (low.min(p), high.max(p)));
                 points.extend(corners(low, high).map(world));
             }
         }
@@ -125,12 +102,8 @@ fn triangles(scene: &Scene) -> impl Iterator<Item = [DVec3; 3]> + '_ {
         .flat_map(|(object, mesh)| {
             let mirrored = object.transform.determinant() < 0.0;
             mesh.triangles.iter().map(move |corners| {
-                let [a, b, c] = corners.map(|i| {
-                    object
-                        .transform
-                        .0
-                        .transform_point3(mesh.positions[i as usize].as_dvec3())
-                });
+                let [a, b, c] =
+                    corners.map(|i| object.transform.0.transform_point3(mesh.positions[i as usize].as_dvec3()));
                 if mirrored { [a, c, b] } else { [a, b, c] }
             })
         })
@@ -138,9 +111,7 @@ fn triangles(scene: &Scene) -> impl Iterator<Item = [DVec3; 3]> + '_ {
 }
 
 fn signed_volume(scene: &Scene, centre: DVec3) -> f64 {
-    triangles(scene)
-        .map(|[a, b, c]| (a - centre).dot((b - centre).cross(c - centre)) / 6.0)
-        .sum()
+    triangles(scene).map(|[a, b, c]| (a - centre).dot((b - centre).cross(c - centre)) / 6.0).sum()
 }
 
 /// Distance from `origin` along `way` (unit) to the first triangle. None: nothing is there.

@@ -25,19 +25,12 @@ const DECODED_BYTES_MAX: u64 = TEXELS_MAX * 16;
 
 /// Reads the texture in the file `path`. The texture repeats, is filtered, and is not scaled.
 pub fn load_texture(path: &Path, space: ColorSpace) -> Result<Texture, SceneError> {
-    let bytes = std::fs::read(path).map_err(|source| SceneError::Io {
-        location: Location::file(path),
-        source,
-    })?;
+    let bytes = std::fs::read(path).map_err(|source| SceneError::Io { location: Location::file(path), source })?;
     texture_from_bytes(&bytes, path, space)
 }
 
 /// Reads a texture from the bytes of a picture; `name` is its file, or what stands for one in messages.
-pub fn texture_from_bytes(
-    bytes: &[u8],
-    name: &Path,
-    space: ColorSpace,
-) -> Result<Texture, SceneError> {
+pub fn texture_from_bytes(bytes: &[u8], name: &Path, space: ColorSpace) -> Result<Texture, SceneError> {
     let bad = |message: String| SceneError::bad(Location::file(name), message);
     let (width, height, data) = match bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
         true => decode_exr(bytes).map_err(bad)?,
@@ -57,9 +50,7 @@ pub fn texture_from_bytes(
 }
 
 fn decode(bytes: &[u8], space: ColorSpace) -> Result<(u32, u32, TextureData), String> {
-    let reader = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|e| e.to_string())?;
+    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     if reader.format().is_none() {
         return Err("not a picture in PNG, JPEG, HDR, WebP or EXR format".to_owned());
     }
@@ -77,14 +68,10 @@ fn decode(bytes: &[u8], space: ColorSpace) -> Result<(u32, u32, TextureData), St
 fn check_size(width: u64, height: u64) -> Result<(), String> {
     let side = 1..=u64::from(SIDE_MAX);
     if !side.contains(&width) || !side.contains(&height) {
-        return Err(format!(
-            "a picture of {width} x {height}; allowed are 1 to {SIDE_MAX} each way"
-        ));
+        return Err(format!("a picture of {width} x {height}; allowed are 1 to {SIDE_MAX} each way"));
     }
     if width * height > TEXELS_MAX {
-        return Err(format!(
-            "a picture of {width} x {height}; allowed are {TEXELS_MAX} texels"
-        ));
+        return Err(format!("a picture of {width} x {height}; allowed are {TEXELS_MAX} texels"));
     }
     Ok(())
 }
@@ -103,17 +90,8 @@ fn texels(picture: DynamicImage, space: ColorSpace) -> TextureData {
                 ColorSpace::Srgb => srgb16_to_linear()[usize::from(code)],
                 ColorSpace::Linear => f32::from(code) / 65_535.0,
             };
-            let texel = |p: [u16; 4]| {
-                [
-                    decode(p[0]),
-                    decode(p[1]),
-                    decode(p[2]),
-                    f32::from(p[3]) / 65_535.0,
-                ]
-            };
-            TextureData::Float(Arc::new(
-                picture.into_rgba16().pixels().map(|p| texel(p.0)).collect(),
-            ))
+            let texel = |p: [u16; 4]| [decode(p[0]), decode(p[1]), decode(p[2]), f32::from(p[3]) / 65_535.0];
+            TextureData::Float(Arc::new(picture.into_rgba16().pixels().map(|p| texel(p.0)).collect()))
         }
         _ => {
             let texels = Arc::new(picture.into_rgba8().pixels().map(|p| p.0).collect());
@@ -127,20 +105,12 @@ fn texels(picture: DynamicImage, space: ColorSpace) -> TextureData {
 
 fn srgb16_to_linear() -> &'static [f32] {
     static TABLE: OnceLock<Vec<f32>> = OnceLock::new();
-    TABLE.get_or_init(|| {
-        (0..=u16::MAX)
-            .map(|code| srgb_to_linear(f64::from(code) / 65_535.0) as f32)
-            .collect()
-    })
+    TABLE.get_or_init(|| (0..=u16::MAX).map(|code| srgb_to_linear(f64::from(code) / 65_535.0) as f32).collect())
 }
 
 /// IEC 61966-2-1, 0 to 1.
 pub(super) fn srgb_to_linear(v: f64) -> f64 {
-    if v <= 0.04045 {
-        v / 12.92
-    } else {
-        libm::pow((v + 0.055) / 1.055, 2.4)
-    }
+    if v <= 0.04045 { v / 12.92 } else { libm::pow((v + 0.055) / 1.055, 2.4) }
 }
 
 /// A texture must not bring NaN or infinity into a picture: those texels are black or the largest half.
@@ -149,19 +119,14 @@ fn finite(v: f32) -> f32 {
     if v.is_nan() {
         return 0.0;
     }
-    if v.is_infinite() {
-        HALF_MAX.copysign(v)
-    } else {
-        v
-    }
+    if v.is_infinite() { HALF_MAX.copysign(v) } else { v }
 }
 
 fn decode_exr(bytes: &[u8]) -> Result<(u32, u32, TextureData), String> {
     use exr::prelude::{ReadChannels, ReadLayers, read};
     let readable = |e: exr::error::Error| format!("cannot decode the picture: {e}");
     // The sizes in the header come before any allocation for texels.
-    let meta =
-        exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(readable)?;
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(readable)?;
     for header in &meta.headers {
         check_size(header.layer_size.0 as u64, header.layer_size.1 as u64)?;
     }
@@ -180,9 +145,5 @@ fn decode_exr(bytes: &[u8]) -> Result<(u32, u32, TextureData), String> {
         .map_err(readable)?;
     let size = image.layer_data.size;
     let texels = image.layer_data.channel_data.pixels.1;
-    Ok((
-        size.0 as u32,
-        size.1 as u32,
-        TextureData::Float(Arc::new(texels)),
-    ))
+    Ok((size.0 as u32, size.1 as u32, TextureData::Float(Arc::new(texels))))
 }

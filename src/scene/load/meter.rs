@@ -20,9 +20,7 @@ pub(super) fn expose(scene: &mut Scene) {
     for light in &mut scene.lights {
         light.intensity = (light.intensity.as_dvec3() * factor).as_vec3();
     }
-    scene.warnings.push(format!(
-        "lights are scaled by {factor:.3e}, so that the picture is neither black nor white"
-    ));
+    scene.warnings.push(format!("lights are scaled by {factor:.3e}, so that the picture is neither black nor white"));
 }
 
 /// Irradiance at the centre from all lights, shadows and cones aside, over pi.
@@ -35,9 +33,7 @@ fn meter(scene: &Scene) -> f64 {
             LightKind::Directional { .. } => luminance,
             LightKind::Point { position } | LightKind::Spot { position, .. } => {
                 // A lamp within the scene lights what is around it, not the centre.
-                let distance = (position.as_dvec3() - bounds.centre())
-                    .length()
-                    .max(bounds.radius() * 0.5);
+                let distance = (position.as_dvec3() - bounds.centre()).length().max(bounds.radius() * 0.5);
                 luminance / (distance * distance)
             }
         }

@@ -14,10 +14,7 @@ pub(super) fn triangulate(corners: &[u32], positions: &[Vec3], triangles: &mut V
         triangles.extend((1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]));
         return;
     }
-    let points: Vec<DVec3> = corners
-        .iter()
-        .map(|c| positions[*c as usize].as_dvec3())
-        .collect();
+    let points: Vec<DVec3> = corners.iter().map(|c| positions[*c as usize].as_dvec3()).collect();
     let plane = flatten(&points);
     let mut left: Vec<usize> = (0..corners.len()).collect();
     while left.len() > 3 {
@@ -25,10 +22,7 @@ pub(super) fn triangulate(corners: &[u32], positions: &[Vec3], triangles: &mut V
         let corner = |k: usize| (left[(k + n - 1) % n], left[k], left[(k + 1) % n]);
         // A polygon that crosses itself may have no ear: then its first corner goes.
         // The second corner is tried first, which makes a convex polygon a fan.
-        let ear = (1..=n)
-            .map(|k| k % n)
-            .find(|k| is_ear(&plane, &left, corner(*k)))
-            .unwrap_or(1);
+        let ear = (1..=n).map(|k| k % n).find(|k| is_ear(&plane, &left, corner(*k))).unwrap_or(1);
         let (a, b, c) = corner(ear);
         triangles.push([corners[a], corners[b], corners[c]]);
         left.remove(ear);
@@ -39,11 +33,7 @@ pub(super) fn triangulate(corners: &[u32], positions: &[Vec3], triangles: &mut V
 /// Appends the triangles of a strip: every second one turned.
 pub(super) fn unroll_strip(corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
     for (i, w) in corners.windows(3).enumerate() {
-        let triangle = if i % 2 == 0 {
-            [w[0], w[1], w[2]]
-        } else {
-            [w[1], w[0], w[2]]
-        };
+        let triangle = if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] };
         // Repeated corners join strips and draw nothing.
         if w[0] != w[1] && w[1] != w[2] && w[2] != w[0] {
             triangles.push(triangle);

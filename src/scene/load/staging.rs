@@ -6,21 +6,16 @@
 
 use super::bounds::{Bounds, free_distance};
 use crate::scene::{
-    Attenuation, Background, Camera, Film, Filter, Geometry, Integrator, IntensityUnit, Light,
-    LightKind, Material, MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler,
-    Scene, ToneMap, Transform, shape,
+    Attenuation, Background, Camera, Film, Filter, Geometry, Integrator, IntensityUnit, Light, LightKind, Material,
+    MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, ToneMap, Transform, shape,
 };
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 use std::path::Path;
 
 /// Stands for "no camera given": `eye` and `target` of a real camera differ.
-const NO_CAMERA: Camera = Camera {
-    eye: Vec3::ZERO,
-    target: Vec3::ZERO,
-    up: Vec3::Y,
-    projection: Projection::Perspective { fov_y: FOV_Y },
-};
+const NO_CAMERA: Camera =
+    Camera { eye: Vec3::ZERO, target: Vec3::ZERO, up: Vec3::Y, projection: Projection::Perspective { fov_y: FOV_Y } };
 
 /// 30 degrees: little perspective, as in a photograph of a product.
 const FOV_Y: f32 = std::f32::consts::FRAC_PI_6;
@@ -56,10 +51,7 @@ pub fn bare_scene(path: &Path) -> Scene {
             shadows: true,
         },
         camera: NO_CAMERA,
-        background: Background {
-            bottom: Rgb::ZERO,
-            top: Rgb::ZERO,
-        },
+        background: Background { bottom: Rgb::ZERO, top: Rgb::ZERO },
         ambient: Rgb::ZERO,
         materials: Vec::new(),
         textures: Vec::new(),
@@ -82,11 +74,7 @@ pub fn stage(scene: &mut Scene) {
     let (no_camera, no_lights) = (lacks_camera(scene), scene.lights.is_empty());
     let room = bounds.is_room();
     if no_camera {
-        scene.camera = if room {
-            room_camera(scene, &bounds)
-        } else {
-            object_camera(&scene.film, &bounds)
-        };
+        scene.camera = if room { room_camera(scene, &bounds) } else { object_camera(&scene.film, &bounds) };
     }
     if no_lights {
         match room {
@@ -94,10 +82,7 @@ pub fn stage(scene: &mut Scene) {
             false => light_object(scene),
         }
         scene.ambient = Rgb::splat(if room { 2.0 * AMBIENT } else { AMBIENT });
-        scene.background = Background {
-            bottom: Rgb::new(0.55, 0.55, 0.55),
-            top: Rgb::new(0.72, 0.8, 0.92),
-        };
+        scene.background = Background { bottom: Rgb::new(0.55, 0.55, 0.55), top: Rgb::new(0.72, 0.8, 0.92) };
     }
     if no_camera && no_lights && !room && bounds.wants_ground() {
         add_ground(scene, &bounds);
@@ -107,11 +92,7 @@ pub fn stage(scene: &mut Scene) {
 /// Unit vector towards `azimuth` (from +z to +x) and `elevation`, radians.
 fn towards(azimuth: f64, elevation: f64) -> DVec3 {
     let c = libm::cos(elevation);
-    DVec3::new(
-        libm::sin(azimuth) * c,
-        libm::sin(elevation),
-        libm::cos(azimuth) * c,
-    )
+    DVec3::new(libm::sin(azimuth) * c, libm::sin(elevation), libm::cos(azimuth) * c)
 }
 
 /// The front of a model is +z (as in glTF); thin ones are seen from their broad side.
@@ -142,31 +123,18 @@ fn fit(film: &Film, bounds: &Bounds, back: DVec3) -> f64 {
         v.dot(back) + (v.dot(right).abs() / tan_x).max(v.dot(up).abs() / tan_y)
     };
     // A single point is seen from the distance its rounding allows.
-    bounds
-        .points()
-        .map(|p| needed(&p))
-        .fold(0.0, f64::max)
-        .max(bounds.radius() * 1.1)
+    bounds.points().map(|p| needed(&p)).fold(0.0, f64::max).max(bounds.radius() * 1.1)
 }
 
 /// Right and up of a camera that looks against `back`.
 fn frame(back: DVec3) -> (DVec3, DVec3) {
     let right = DVec3::Y.cross(back);
-    let right = if right.length() > 1e-6 {
-        right / right.length()
-    } else {
-        DVec3::X
-    };
+    let right = if right.length() > 1e-6 { right / right.length() } else { DVec3::X };
     (right, back.cross(right))
 }
 
 fn camera(eye: DVec3, target: DVec3, fov_y: f32) -> Camera {
-    Camera {
-        eye: eye.as_vec3(),
-        target: target.as_vec3(),
-        up: Vec3::Y,
-        projection: Projection::Perspective { fov_y },
-    }
+    Camera { eye: eye.as_vec3(), target: target.as_vec3(), up: Vec3::Y, projection: Projection::Perspective { fov_y } }
 }
 
 /// From where the view across the room's middle is longest, or, if a side is open, through it from outside.
@@ -180,21 +148,12 @@ fn room_camera(scene: &Scene, bounds: &Bounds) -> Camera {
         return camera(centre + ways[open] * distance, centre, FOV_Y);
     }
     let lengths = free.map(|d| d.unwrap_or(0.0));
-    let best = (0..4).fold(
-        0,
-        |best, i| if lengths[i] > lengths[best] { i } else { best },
-    );
+    let best = (0..4).fold(0, |best, i| if lengths[i] > lengths[best] { i } else { best });
     let eye = centre + ways[best] * (0.9 * lengths[best]).max(bounds.radius() * 1e-3);
     camera(eye, centre, FOV_Y_ROOM)
 }
 
-fn light(
-    name: &str,
-    kind: LightKind,
-    irradiance: f32,
-    attenuation: Attenuation,
-    casts_shadow: bool,
-) -> Light {
+fn light(name: &str, kind: LightKind, irradiance: f32, attenuation: Attenuation, casts_shadow: bool) -> Light {
     Light {
         name: name.to_owned(),
         kind,
@@ -207,27 +166,13 @@ fn light(
 
 /// Directional lights are the same at every size: the key from the upper left behind the camera, the fill from its right.
 fn light_object(scene: &mut Scene) {
-    let back =
-        (scene.camera.eye.as_dvec3() - scene.camera.target.as_dvec3()).normalize_or(DVec3::Z);
-    let azimuth = if back.x.abs().max(back.z.abs()) > 1e-3 {
-        libm::atan2(back.x, back.z)
-    } else {
-        0.0
-    };
-    let lights = [
-        ("key", -50.0_f64, 50.0_f64, KEY, true),
-        ("fill", 55.0, 20.0, FILL_LIGHT, false),
-    ];
+    let back = (scene.camera.eye.as_dvec3() - scene.camera.target.as_dvec3()).normalize_or(DVec3::Z);
+    let azimuth = if back.x.abs().max(back.z.abs()) > 1e-3 { libm::atan2(back.x, back.z) } else { 0.0 };
+    let lights = [("key", -50.0_f64, 50.0_f64, KEY, true), ("fill", 55.0, 20.0, FILL_LIGHT, false)];
     for (name, turn, elevation, strength, shadow) in lights {
         let direction = -towards(azimuth + turn.to_radians(), elevation.to_radians()).as_vec3();
         let irradiance = strength * PI as f32;
-        scene.lights.push(light(
-            name,
-            LightKind::Directional { direction },
-            irradiance,
-            Attenuation::None,
-            shadow,
-        ));
+        scene.lights.push(light(name, LightKind::Directional { direction }, irradiance, Attenuation::None, shadow));
     }
 }
 
@@ -242,13 +187,7 @@ fn light_room(scene: &mut Scene, bounds: &Bounds) {
     for (name, position, strength, shadow) in lights {
         let intensity = f64::from(strength) * PI * reach * reach;
         let kind = LightKind::Point { position };
-        scene.lights.push(light(
-            name,
-            kind,
-            intensity as f32,
-            Attenuation::InverseSquare,
-            shadow,
-        ));
+        scene.lights.push(light(name, kind, intensity as f32, Attenuation::InverseSquare, shadow));
     }
 }
 
@@ -262,10 +201,7 @@ fn add_ground(scene: &mut Scene, bounds: &Bounds) {
     // A little below, so that a flat bottom does not lie in the same plane; far from the origin at least its rounding.
     let gap = (bounds.radius() * 1e-4).max(bounds.low().abs().max_element() * 1e-6);
     let centre = bounds.centre().with_y(bounds.low().y - gap);
-    let ground = Material {
-        color: Rgb::splat(0.55),
-        ..Material::grey("ground")
-    };
+    let ground = Material { color: Rgb::splat(0.55), ..Material::grey("ground") };
     scene.materials.push(ground);
     scene.meshes.push(mesh);
     scene.objects.push(Object {

@@ -20,26 +20,15 @@ pub(super) struct Builder {
 
 impl Builder {
     pub fn new(name: &str) -> Self {
-        Self {
-            mesh: Mesh {
-                name: name.to_owned(),
-                ..Mesh::default()
-            },
-        }
+        Self { mesh: Mesh { name: name.to_owned(), ..Mesh::default() } }
     }
 
     fn push(&mut self, vertex: Vertex) -> u32 {
         let index = self.mesh.positions.len() as u32;
         // Adding zero turns -0 into +0, so that equal positions are equal bits.
-        self.mesh
-            .positions
-            .push(vertex.position.as_vec3() + Vec3::ZERO);
-        self.mesh
-            .normals
-            .push(unit(vertex.normal).as_vec3() + Vec3::ZERO);
-        self.mesh
-            .uvs
-            .push(vertex.uv.as_vec2().clamp(Vec2::ZERO, Vec2::ONE));
+        self.mesh.positions.push(vertex.position.as_vec3() + Vec3::ZERO);
+        self.mesh.normals.push(unit(vertex.normal).as_vec3() + Vec3::ZERO);
+        self.mesh.uvs.push(vertex.uv.as_vec2().clamp(Vec2::ZERO, Vec2::ONE));
         index
     }
 

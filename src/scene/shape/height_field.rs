@@ -20,19 +20,12 @@ impl HeightGrid {
         let luminance = |r: f32, g: f32, b: f32| 0.2126 * r + 0.7152 * g + 0.0722 * b;
         let heights = match &texture.data {
             // A height map stored in a picture means its codes, not the light they stand for.
-            TextureData::Srgb8(texels) | TextureData::Linear8(texels) => texels
-                .iter()
-                .map(|t| luminance(f32::from(t[0]), f32::from(t[1]), f32::from(t[2])) / 255.0)
-                .collect(),
-            TextureData::Float(texels) => {
-                texels.iter().map(|t| luminance(t[0], t[1], t[2])).collect()
+            TextureData::Srgb8(texels) | TextureData::Linear8(texels) => {
+                texels.iter().map(|t| luminance(f32::from(t[0]), f32::from(t[1]), f32::from(t[2])) / 255.0).collect()
             }
+            TextureData::Float(texels) => texels.iter().map(|t| luminance(t[0], t[1], t[2])).collect(),
         };
-        Self {
-            columns: texture.width,
-            rows: texture.height,
-            heights,
-        }
+        Self { columns: texture.width, rows: texture.height, heights }
     }
 }
 
@@ -42,28 +35,18 @@ pub fn height_field(grid: &HeightGrid, size: [f64; 2], scale: f64) -> Result<Mes
     let (columns, rows) = (grid.columns, grid.rows);
     let nodes_max = super::SEGMENTS_MAX + 1;
     if !(2..=nodes_max).contains(&columns) || !(2..=nodes_max).contains(&rows) {
-        return Err(format!(
-            "a height grid of {columns} x {rows} nodes; allowed are 2 to {nodes_max} each way"
-        ));
+        return Err(format!("a height grid of {columns} x {rows} nodes; allowed are 2 to {nodes_max} each way"));
     }
     if grid.heights.len() as u64 != u64::from(columns) * u64::from(rows) {
-        return Err(format!(
-            "{} heights for a grid of {columns} x {rows}",
-            grid.heights.len()
-        ));
+        return Err(format!("{} heights for a grid of {columns} x {rows}", grid.heights.len()));
     }
     if let Some(i) = grid.heights.iter().position(|h| !h.is_finite()) {
         return Err(format!("height {i} is not a finite number"));
     }
     let height = |i: u32, row: u32| f64::from(grid.heights[(row * columns + i) as usize]) * scale;
     // Half a central difference inside, a one-sided one at the border.
-    let slope = |before: f64, after: f64, steps: u32, step: f64| {
-        (after - before) / (f64::from(steps) * step)
-    };
-    let (dx, dz) = (
-        size[0] / f64::from(columns - 1),
-        size[1] / f64::from(rows - 1),
-    );
+    let slope = |before: f64, after: f64, steps: u32, step: f64| (after - before) / (f64::from(steps) * step);
+    let (dx, dz) = (size[0] / f64::from(columns - 1), size[1] / f64::from(rows - 1));
     let mut builder = Builder::new("height field");
     builder.add_grid(columns - 1, rows - 1, |i, j| {
         let row = rows - 1 - j;
@@ -71,16 +54,9 @@ pub fn height_field(grid: &HeightGrid, size: [f64; 2], scale: f64) -> Result<Mes
         let (north, south) = (row.saturating_sub(1), (row + 1).min(rows - 1));
         let slope_x = slope(height(west, row), height(east, row), east - west, dx);
         let slope_z = slope(height(i, north), height(i, south), south - north, dz);
-        let uv = DVec2::new(
-            f64::from(i) / f64::from(columns - 1),
-            f64::from(j) / f64::from(rows - 1),
-        );
+        let uv = DVec2::new(f64::from(i) / f64::from(columns - 1), f64::from(j) / f64::from(rows - 1));
         Vertex {
-            position: DVec3::new(
-                (uv.x - 0.5) * size[0],
-                height(i, row),
-                (0.5 - uv.y) * size[1],
-            ),
+            position: DVec3::new((uv.x - 0.5) * size[0], height(i, row), (0.5 - uv.y) * size[1]),
             normal: DVec3::new(-slope_x, 1.0, -slope_z),
             uv,
         }

@@ -44,20 +44,13 @@ pub const PROFILE_POINTS_MAX: usize = 4096;
 /// The error says what is wrong with the profile.
 pub fn lathe(profile: &Profile, segments: u32) -> Result<Mesh, String> {
     check(profile)?;
-    let points: Vec<DVec2> = profile
-        .points
-        .iter()
-        .map(|p| DVec2::from_array(*p))
-        .collect();
+    let points: Vec<DVec2> = profile.points.iter().map(|p| DVec2::from_array(*p)).collect();
     let rows = match profile.kind {
         ProfileKind::Smooth => smooth_rows(&points, profile.steps),
         ProfileKind::Polyline => polyline_rows(&points, profile.crease),
     };
     if (rows.len() as u64) * u64::from(segments + 1) > u64::from(u32::MAX) / 8 {
-        return Err(format!(
-            "{} rows of {segments} segments are too many",
-            rows.len()
-        ));
+        return Err(format!("{} rows of {segments} segments are too many", rows.len()));
     }
     Ok(revolve("lathe", &rows, segments))
 }
@@ -65,19 +58,11 @@ pub fn lathe(profile: &Profile, segments: u32) -> Result<Mesh, String> {
 fn check(profile: &Profile) -> Result<(), String> {
     let points = &profile.points;
     if points.len() < 2 || points.len() > PROFILE_POINTS_MAX {
-        return Err(format!(
-            "a profile of {} points; allowed are 2 to {PROFILE_POINTS_MAX}",
-            points.len()
-        ));
+        return Err(format!("a profile of {} points; allowed are 2 to {PROFILE_POINTS_MAX}", points.len()));
     }
-    if let Some(i) = points
-        .iter()
-        .position(|p| !(p[0] >= 0.0 && p[0] <= 1e30 && p[1].abs() <= 1e30))
-    {
+    if let Some(i) = points.iter().position(|p| !(p[0] >= 0.0 && p[0] <= 1e30 && p[1].abs() <= 1e30)) {
         let [r, y] = points[i];
-        return Err(format!(
-            "profile point {i} is ({r}, {y}); radii are 0 or more and both numbers are finite"
-        ));
+        return Err(format!("profile point {i} is ({r}, {y}); radii are 0 or more and both numbers are finite"));
     }
     if let Some(i) = points.windows(2).position(|p| p[0] == p[1]) {
         return Err(format!("profile points {i} and {} are the same", i + 1));
@@ -86,10 +71,7 @@ fn check(profile: &Profile) -> Result<(), String> {
         return Err("all radii of the profile are 0".to_owned());
     }
     if profile.kind == ProfileKind::Smooth && !(1..=64).contains(&profile.steps) {
-        return Err(format!(
-            "{} steps between profile points; allowed are 1 to 64",
-            profile.steps
-        ));
+        return Err(format!("{} steps between profile points; allowed are 1 to 64", profile.steps));
     }
     Ok(())
 }
@@ -113,22 +95,10 @@ pub(super) fn polyline_rows(points: &[DVec2], crease: f64) -> Vec<Row> {
         let v = lengths[i] / total;
         let sum = before + after;
         if before.dot(after) >= cos_crease && sum.length() > 1e-6 {
-            rows.push(Row {
-                at,
-                normal: sum / sum.length(),
-                v,
-            });
+            rows.push(Row { at, normal: sum / sum.length(), v });
         } else {
-            rows.push(Row {
-                at,
-                normal: before,
-                v,
-            });
-            rows.push(Row {
-                at,
-                normal: after,
-                v,
-            });
+            rows.push(Row { at, normal: before, v });
+            rows.push(Row { at, normal: after, v });
         }
     }
     rows
@@ -154,8 +124,7 @@ fn smooth_rows(points: &[DVec2], steps: u32) -> Vec<Row> {
         let first = u32::from(i > 0);
         for step in first..=steps {
             let t = f64::from(step) / f64::from(steps);
-            let (at, mut tangent) =
-                hermite(p[0], tangents[i] * chord, p[1], tangents[i + 1] * chord, t);
+            let (at, mut tangent) = hermite(p[0], tangents[i] * chord, p[1], tangents[i + 1] * chord, t);
             // Overshoot past the axis would turn the surface inside out.
             let at = DVec2::new(at.x.max(0.0), at.y);
             if libm::hypot(tangent.x, tangent.y) < 1e-12 * chord * chord {
@@ -167,15 +136,7 @@ fn smooth_rows(points: &[DVec2], steps: u32) -> Vec<Row> {
     let at: Vec<DVec2> = curve.iter().map(|c| c.0).collect();
     let lengths = running_length(&at);
     let total = lengths[lengths.len() - 1];
-    curve
-        .iter()
-        .zip(&lengths)
-        .map(|(&(at, normal), length)| Row {
-            at,
-            normal,
-            v: length / total,
-        })
-        .collect()
+    curve.iter().zip(&lengths).map(|(&(at, normal), length)| Row { at, normal, v: length / total }).collect()
 }
 
 /// The centripetal knot step, the square root of the chord.
@@ -196,10 +157,7 @@ fn catmull_rom_tangents(points: &[DVec2]) -> Vec<DVec2> {
                 _ if i == last => return end_tangent(points, slope(last - 1, last), last),
                 _ => ((i - 1, i), (i, i + 1)),
             };
-            let (h0, h1) = (
-                knot(points[before.1] - points[before.0]),
-                knot(points[after.1] - points[after.0]),
-            );
+            let (h0, h1) = (knot(points[before.1] - points[before.0]), knot(points[after.1] - points[after.0]));
             // The parabola through three points: the neighbours' slopes, each weighted by the other's step.
             (slope(before.0, before.1) * h1 + slope(after.0, after.1) * h0) / (h0 + h1)
         })
@@ -218,8 +176,7 @@ fn end_tangent(points: &[DVec2], slope: DVec2, i: usize) -> DVec2 {
 fn hermite(p0: DVec2, m0: DVec2, p1: DVec2, m1: DVec2, t: f64) -> (DVec2, DVec2) {
     let (t2, s) = (t * t, 1.0 - t);
     // At t = 0 and t = 1 exactly the end points, so that neighbouring pieces meet.
-    let at = p0 * ((1.0 + 2.0 * t) * s * s) + m0 * (t * s * s) + p1 * (t2 * (3.0 - 2.0 * t))
-        - m1 * (t2 * s);
+    let at = p0 * ((1.0 + 2.0 * t) * s * s) + m0 * (t * s * s) + p1 * (t2 * (3.0 - 2.0 * t)) - m1 * (t2 * s);
     let d = (p1 - p0) * (6.0 * t * s) + m0 * (s * (1.0 - 3.0 * t)) + m1 * (t * (3.0 * t - 2.0));
     (at, d)
 }
@@ -227,10 +184,7 @@ fn hermite(p0: DVec2, m0: DVec2, p1: DVec2, m1: DVec2, t: f64) -> (DVec2, DVec2)
 /// Turns `rows` around the y axis. Where a row is a point on the axis each segment gets a normal of its own, so that a
 /// cone's tip is shaded like its side.
 pub(super) fn revolve(name: &str, rows: &[Row], segments: u32) -> Mesh {
-    debug_assert!(
-        (super::SEGMENTS_MIN..=super::SEGMENTS_MAX).contains(&segments),
-        "segments = {segments}"
-    );
+    debug_assert!((super::SEGMENTS_MIN..=super::SEGMENTS_MAX).contains(&segments), "segments = {segments}");
     let mut builder = Builder::new(name);
     add_revolved(&mut builder, rows, segments);
     builder.finish()

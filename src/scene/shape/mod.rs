@@ -41,9 +41,7 @@ pub fn check_segments(segments: i64) -> Result<u32, String> {
     if (i64::from(SEGMENTS_MIN)..=i64::from(SEGMENTS_MAX)).contains(&segments) {
         return Ok(segments as u32);
     }
-    Err(format!(
-        "{segments} segments; allowed are {SEGMENTS_MIN} to {SEGMENTS_MAX}"
-    ))
+    Err(format!("{segments} segments; allowed are {SEGMENTS_MIN} to {SEGMENTS_MAX}"))
 }
 
 /// `size`, if it is a length a shape can have.

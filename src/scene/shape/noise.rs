@@ -6,38 +6,20 @@ use super::height_field::HeightGrid;
 /// Perlin 2002 and gradients hashed from the lattice point), each twice as fine and `gain` times as high as the last.
 /// `nodes`: along each side, 2 to `SEGMENTS_MAX` + 1; `features`: hills along a side of the first octave;
 /// `octaves`: 1 to 16; `gain`: 0 to 1, 0.5 is a mountain range (Musgrave 1989: H = 1).
-pub fn fractal_heights(
-    nodes: u32,
-    features: f64,
-    octaves: u32,
-    gain: f64,
-    seed: u32,
-) -> HeightGrid {
+pub fn fractal_heights(nodes: u32, features: f64, octaves: u32, gain: f64, seed: u32) -> HeightGrid {
     debug_assert!((2..=super::SEGMENTS_MAX + 1).contains(&nodes) && (1..=16).contains(&octaves));
     let step = features / f64::from(nodes - 1);
     let height = |index: u32| {
-        let (x, y) = (
-            f64::from(index % nodes) * step,
-            f64::from(index / nodes) * step,
-        );
+        let (x, y) = (f64::from(index % nodes) * step, f64::from(index / nodes) * step);
         let (mut sum, mut weight, mut scale) = (0.0, 1.0, 1.0);
         for octave in 0..octaves {
-            sum += weight
-                * gradient_noise(
-                    x * scale,
-                    y * scale,
-                    seed.wrapping_add(octave.wrapping_mul(0x9e37_79b9)),
-                );
+            sum += weight * gradient_noise(x * scale, y * scale, seed.wrapping_add(octave.wrapping_mul(0x9e37_79b9)));
             weight *= gain;
             scale *= 2.0;
         }
         sum as f32
     };
-    HeightGrid {
-        columns: nodes,
-        rows: nodes,
-        heights: (0..nodes * nodes).map(height).collect(),
-    }
+    HeightGrid { columns: nodes, rows: nodes, heights: (0..nodes * nodes).map(height).collect() }
 }
 
 /// About -1 to 1, zero at lattice points.
@@ -54,11 +36,8 @@ fn gradient_noise(x: f64, y: f64, seed: u32) -> f64 {
     let lerp = |a: f64, b: f64, t: f64| a + (b - a) * t;
     let (u, v) = (fade(fx), fade(fy));
     // Unit gradients reach sqrt(1/2) at most.
-    lerp(
-        lerp(corner(0.0, 0.0), corner(1.0, 0.0), u),
-        lerp(corner(0.0, 1.0), corner(1.0, 1.0), u),
-        v,
-    ) * std::f64::consts::SQRT_2
+    lerp(lerp(corner(0.0, 0.0), corner(1.0, 0.0), u), lerp(corner(0.0, 1.0), corner(1.0, 1.0), u), v)
+        * std::f64::consts::SQRT_2
 }
 
 /// Avalanche of three words: the finaliser of MurmurHash3 (Appleby 2008) over each in turn.

@@ -8,9 +8,7 @@ use std::collections::HashMap;
 /// within `crease` radians of its own face. A vertex where such groups differ is doubled. Vertices count as one where
 /// they share an index, so a seam of doubled vertices stays sharp.
 pub fn compute_smooth_normals(mesh: &mut Mesh, crease: f64) {
-    let areas: Vec<DVec3> = (0..mesh.triangles.len())
-        .map(|face| area_vector(mesh, face))
-        .collect();
+    let areas: Vec<DVec3> = (0..mesh.triangles.len()).map(|face| area_vector(mesh, face)).collect();
     let around = Incidence::new(mesh);
     let cos_crease = libm::cos(crease.clamp(0.0, std::f64::consts::PI));
     let mut split: HashMap<(u32, [u32; 3]), u32> = HashMap::new();
@@ -32,10 +30,7 @@ pub fn compute_smooth_normals(mesh: &mut Mesh, crease: f64) {
             let key = (vertex, normal.to_array().map(f32::to_bits));
             mesh.triangles[face][k] = *split.entry(key).or_insert_with(|| {
                 normals.push(normal);
-                duplicate_vertex(
-                    mesh_vectors(&mut mesh.positions, &mut mesh.uvs, &mut mesh.colors),
-                    v,
-                )
+                duplicate_vertex(mesh_vectors(&mut mesh.positions, &mut mesh.uvs, &mut mesh.colors), v)
             });
         }
     }
@@ -51,13 +46,9 @@ pub fn repair_normals(mesh: &mut Mesh) -> usize {
     for v in 0..mesh.normals.len() {
         let n = mesh.normals[v];
         mesh.normals[v] = match &around {
-            Some(around) if !usable(n) => direction(
-                around
-                    .faces(v as u32)
-                    .iter()
-                    .map(|f| area_vector(mesh, *f as usize))
-                    .sum(),
-            ),
+            Some(around) if !usable(n) => {
+                direction(around.faces(v as u32).iter().map(|f| area_vector(mesh, *f as usize)).sum())
+            }
             _ => direction(n.as_dvec3()),
         };
     }
@@ -66,11 +57,7 @@ pub fn repair_normals(mesh: &mut Mesh) -> usize {
 
 type VertexArrays<'a> = (&'a mut Vec<Vec3>, &'a mut Vec<Vec2>, &'a mut Vec<Vec3>);
 
-fn mesh_vectors<'a>(
-    p: &'a mut Vec<Vec3>,
-    uv: &'a mut Vec<Vec2>,
-    c: &'a mut Vec<Vec3>,
-) -> VertexArrays<'a> {
+fn mesh_vectors<'a>(p: &'a mut Vec<Vec3>, uv: &'a mut Vec<Vec2>, c: &'a mut Vec<Vec3>) -> VertexArrays<'a> {
     (p, uv, c)
 }
 
@@ -144,8 +131,7 @@ impl Incidence {
     }
 
     fn faces(&self, vertex: u32) -> &[u32] {
-        &self.faces
-            [self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize]
+        &self.faces[self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize]
     }
 }
 
@@ -157,26 +143,10 @@ mod tests {
 
     /// A unit cube whose eight vertices are shared.
     fn shared_cube() -> Mesh {
-        let positions = (0..8)
-            .map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32))
-            .collect();
-        let quads = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        let triangles = quads
-            .iter()
-            .flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]])
-            .collect();
-        Mesh {
-            positions,
-            triangles,
-            ..Mesh::default()
-        }
+        let positions = (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32)).collect();
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
+        Mesh { positions, triangles, ..Mesh::default() }
     }
 
     #[test]
@@ -184,11 +154,7 @@ mod tests {
         let mut cube = shared_cube();
         compute_smooth_normals(&mut cube, 0.7);
         assert_eq!(cube.positions.len(), 24);
-        assert!(
-            cube.normals.iter().all(|n| n.abs().max_element() == 1.0),
-            "{:?}",
-            cube.normals
-        );
+        assert!(cube.normals.iter().all(|n| n.abs().max_element() == 1.0), "{:?}", cube.normals);
         let mut round = shared_cube();
         compute_smooth_normals(&mut round, PI);
         assert_eq!(round.positions.len(), 8);
@@ -196,31 +162,18 @@ mod tests {
         let exact = std::mem::take(&mut sphere.normals);
         compute_smooth_normals(&mut sphere, 1.0);
         assert_eq!(sphere.positions.len(), exact.len());
-        assert!(
-            sphere
-                .normals
-                .iter()
-                .zip(&exact)
-                .all(|(a, b)| a.dot(*b) > 0.97)
-        );
+        assert!(sphere.normals.iter().zip(&exact).all(|(a, b)| a.dot(*b) > 0.97));
     }
 
     #[test]
     fn zero_and_infinite_normals_are_replaced_and_others_made_unit() {
         let mut mesh = shared_cube();
-        mesh.normals = mesh
-            .positions
-            .iter()
-            .map(|p| (*p - Vec3::splat(0.5)) * 10.0)
-            .collect();
+        mesh.normals = mesh.positions.iter().map(|p| (*p - Vec3::splat(0.5)) * 10.0).collect();
         mesh.normals[0] = Vec3::ZERO;
         mesh.normals[7] = Vec3::new(f32::NAN, 0.0, 1.0);
         assert_eq!(repair_normals(&mut mesh), 2);
         for (p, n) in mesh.positions.iter().zip(&mesh.normals) {
-            assert!(
-                (n.length() - 1.0).abs() < 1e-6 && n.dot(*p - Vec3::splat(0.5)) > 0.3,
-                "{p} {n}"
-            );
+            assert!((n.length() - 1.0).abs() < 1e-6 && n.dot(*p - Vec3::splat(0.5)) > 0.3, "{p} {n}");
         }
     }
 }

@@ -17,18 +17,8 @@ pub fn disk(radius: f64, segments: u32) -> Mesh {
 pub fn cylinder(radius: f64, height: f64, capped: bool, segments: u32) -> Mesh {
     let mut builder = Builder::new("cylinder");
     let normal = DVec2::X;
-    let side = [
-        Row {
-            at: DVec2::new(radius, 0.0),
-            normal,
-            v: 0.0,
-        },
-        Row {
-            at: DVec2::new(radius, height),
-            normal,
-            v: 1.0,
-        },
-    ];
+    let side =
+        [Row { at: DVec2::new(radius, 0.0), normal, v: 0.0 }, Row { at: DVec2::new(radius, height), normal, v: 1.0 }];
     add_revolved(&mut builder, &side, segments);
     if capped {
         add_cap(&mut builder, radius, 0.0, false, segments);
@@ -41,18 +31,8 @@ pub fn cylinder(radius: f64, height: f64, capped: bool, segments: u32) -> Mesh {
 pub fn cone(radius: f64, height: f64, capped: bool, segments: u32) -> Mesh {
     let mut builder = Builder::new("cone");
     let normal = DVec2::new(height, radius) / libm::hypot(height, radius);
-    let side = [
-        Row {
-            at: DVec2::new(radius, 0.0),
-            normal,
-            v: 0.0,
-        },
-        Row {
-            at: DVec2::new(0.0, height),
-            normal,
-            v: 1.0,
-        },
-    ];
+    let side =
+        [Row { at: DVec2::new(radius, 0.0), normal, v: 0.0 }, Row { at: DVec2::new(0.0, height), normal, v: 1.0 }];
     add_revolved(&mut builder, &side, segments);
     if capped {
         add_cap(&mut builder, radius, 0.0, false, segments);
@@ -71,26 +51,15 @@ pub fn sphere_mesh(radius: f64, segments: u32) -> Mesh {
         if j == 0 || j == stacks {
             normal.x = 0.0;
         }
-        Row {
-            at: normal * radius,
-            normal,
-            v,
-        }
+        Row { at: normal * radius, normal, v }
     };
-    revolve(
-        "sphere",
-        &(0..=stacks).map(row).collect::<Vec<_>>(),
-        segments,
-    )
+    revolve("sphere", &(0..=stacks).map(row).collect::<Vec<_>>(), segments)
 }
 
 /// A torus around the y axis: a circle of radius `minor` around one of radius `major` > `minor`.
 /// `segments` around the axis, `rings` around the tube. u around the axis, v around the tube, up from the outer equator.
 pub fn torus(major: f64, minor: f64, segments: u32, rings: u32) -> Mesh {
-    debug_assert!(
-        major > minor,
-        "a torus of radii {major} and {minor} crosses its axis"
-    );
+    debug_assert!(major > minor, "a torus of radii {major} and {minor} crosses its axis");
     let rows: Vec<Row> = circle(rings)
         .into_iter()
         .enumerate()
@@ -105,10 +74,7 @@ pub fn torus(major: f64, minor: f64, segments: u32, rings: u32) -> Mesh {
 
 /// A disk at height `y` that faces up or down, its rim bit-equal to that of a revolved row.
 fn add_cap(builder: &mut Builder, radius: f64, y: f64, up: bool, segments: u32) {
-    debug_assert!(
-        (super::SEGMENTS_MIN..=super::SEGMENTS_MAX).contains(&segments),
-        "segments = {segments}"
-    );
+    debug_assert!((super::SEGMENTS_MIN..=super::SEGMENTS_MAX).contains(&segments), "segments = {segments}");
     let circle = circle(segments);
     builder.add_grid(segments, 1, |i, j| {
         // From the rim inwards it faces up, from the centre outwards down.

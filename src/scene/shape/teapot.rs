@@ -22,11 +22,7 @@ pub fn teapot(steps: u32) -> Mesh {
         builder.add_grid(steps, steps, |i, j| {
             let uv = DVec2::new(f64::from(i), f64::from(j)) / f64::from(steps);
             let (position, normal) = evaluate(&patch, uv);
-            Vertex {
-                position,
-                normal,
-                uv,
-            }
+            Vertex { position, normal, uv }
         });
     }
     builder.finish()
@@ -81,12 +77,7 @@ fn evaluate(patch: &Patch, uv: DVec2) -> (DVec3, DVec3) {
 /// Point and derivative of a cubic Bezier curve, in Bernstein form: both ends are exactly the end points.
 fn cubic(p: &[DVec3; 4], t: f64) -> (DVec3, DVec3) {
     let s = 1.0 - t;
-    let at = p[0] * (s * s * s)
-        + p[1] * (3.0 * s * s * t)
-        + p[2] * (3.0 * s * t * t)
-        + p[3] * (t * t * t);
-    let d = (p[1] - p[0]) * (3.0 * s * s)
-        + (p[2] - p[1]) * (6.0 * s * t)
-        + (p[3] - p[2]) * (3.0 * t * t);
+    let at = p[0] * (s * s * s) + p[1] * (3.0 * s * s * t) + p[2] * (3.0 * s * t * t) + p[3] * (t * t * t);
+    let d = (p[1] - p[0]) * (3.0 * s * s) + (p[2] - p[1]) * (6.0 * s * t) + (p[3] - p[2]) * (3.0 * t * t);
     (at, d)
 }

@@ -11,26 +11,61 @@ use crate::verify::inputs::Domain::{self, Below, Bits, Exponent, Range};
 const KEY: [Domain; 7] = [Below(3), Below(20), Below(0), Below(0), Below(1 << 24), Below(0), Below(64)];
 
 fn key(i: &In) -> SampleKey {
-    SampleKey {
-        sampling: i.u(0),
-        strata: i.u(1),
-        seed: i.u(2),
-        pixel: i.u(3),
-        sample_index: i.u(4),
-        path_id: i.u(5),
-    }
+    SampleKey { sampling: i.u(0), strata: i.u(1), seed: i.u(2), pixel: i.u(3), sample_index: i.u(4), path_id: i.u(5) }
 }
 
 pub const FAMILY: Family = Family {
     kernel: "parity/film",
     twins: &[
-        Twin { name: "hash_u32", domains: &[Below(0)], run: |i, o| { o.u(hash_u32(i.u(0))); } },
-        Twin { name: "hash_combine", domains: &[Below(0), Below(0)], run: |i, o| { o.u(hash_combine(i.u(0), i.u(1))); } },
-        Twin { name: "unit_float", domains: &[Below(0)], run: |i, o| { o.f(unit_float(i.u(0))); } },
-        Twin { name: "sample_1d", domains: &KEY, run: |i, o| { o.f(sample_1d(key(i), i.u(6))); } },
-        Twin { name: "sample_2d", domains: &KEY, run: |i, o| { o.v2(sample_2d(key(i), i.u(6))); } },
-        Twin { name: "dither_hash", domains: &KEY, run: |i, o| { o.u(dither_hash(key(i), i.u(6))); } },
-        Twin { name: "dither_lane", domains: &[Below(0), Below(4)], run: |i, o| { o.f(dither_lane(i.u(0), i.u(1))); } },
+        Twin {
+            name: "hash_u32",
+            domains: &[Below(0)],
+            run: |i, o| {
+                o.u(hash_u32(i.u(0)));
+            },
+        },
+        Twin {
+            name: "hash_combine",
+            domains: &[Below(0), Below(0)],
+            run: |i, o| {
+                o.u(hash_combine(i.u(0), i.u(1)));
+            },
+        },
+        Twin {
+            name: "unit_float",
+            domains: &[Below(0)],
+            run: |i, o| {
+                o.f(unit_float(i.u(0)));
+            },
+        },
+        Twin {
+            name: "sample_1d",
+            domains: &KEY,
+            run: |i, o| {
+                o.f(sample_1d(key(i), i.u(6)));
+            },
+        },
+        Twin {
+            name: "sample_2d",
+            domains: &KEY,
+            run: |i, o| {
+                o.v2(sample_2d(key(i), i.u(6)));
+            },
+        },
+        Twin {
+            name: "dither_hash",
+            domains: &KEY,
+            run: |i, o| {
+                o.u(dither_hash(key(i), i.u(6)));
+            },
+        },
+        Twin {
+            name: "dither_lane",
+            domains: &[Below(0), Below(4)],
+            run: |i, o| {
+                o.f(dither_lane(i.u(0), i.u(1)));
+            },
+        },
         Twin {
             name: "to_fixed",
             domains: &[Bits, Exponent(-40, 40), Range(0.0, 1.0)],

@@ -93,8 +93,17 @@ pub struct Mismatch {
 
 impl std::fmt::Display for Mismatch {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let floats = |words: &[u32]| words.iter().map(|w| format!("{:?} ({w:#010x})", f32::from_bits(*w))).collect::<Vec<_>>().join(", ");
-        write!(f, "{}({}): cpu {}, device {}", self.twin, floats(&self.arguments), floats(&self.cpu), floats(&self.device))
+        let floats = |words: &[u32]| {
+            words.iter().map(|w| format!("{:?} ({w:#010x})", f32::from_bits(*w))).collect::<Vec<_>>().join(", ")
+        };
+        write!(
+            f,
+            "{}({}): cpu {}, device {}",
+            self.twin,
+            floats(&self.arguments),
+            floats(&self.cpu),
+            floats(&self.device)
+        )
     }
 }
 
@@ -104,7 +113,13 @@ fn same(a: u32, b: u32) -> bool {
 }
 
 /// Evaluates one twin on `count` sets of arguments on both sides: how many differ, and the first that does.
-pub fn compare(context: &mut Context, family: &Family, number: usize, count: usize, seed: u32) -> Result<(usize, Option<Mismatch>), RenderError> {
+pub fn compare(
+    context: &mut Context,
+    family: &Family,
+    number: usize,
+    count: usize,
+    seed: u32,
+) -> Result<(usize, Option<Mismatch>), RenderError> {
     let twin = &family.twins[number];
     let inputs = arguments(twin.domains, count, seed);
     let words = kernel(family.kernel, Fetch::Storage).expect("every family names an embedded kernel");

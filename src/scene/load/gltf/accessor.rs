@@ -49,23 +49,13 @@ impl Accessors<'_> {
         if lanes != N && !(lanes == N - 1 && fill.is_some()) {
             return declared.fail(format!("{user} needs {N} numbers each; there are {lanes}"));
         }
-        let mut elements = vec![
-            [0.0; N];
-            if declared.accessor.buffer_view.is_none() {
-                declared.count
-            } else {
-                0
-            }
-        ];
+        let mut elements = vec![[0.0; N]; if declared.accessor.buffer_view.is_none() { declared.count } else { 0 }];
         if elements.is_empty() {
             elements = Vec::with_capacity(declared.count);
         }
         let convert = |bytes: &[u8]| {
             let mut element = [fill.unwrap_or(0.0); N];
-            for (lane, bytes) in element
-                .iter_mut()
-                .zip(bytes.chunks_exact(declared.component.size()))
-            {
+            for (lane, bytes) in element.iter_mut().zip(bytes.chunks_exact(declared.component.size())) {
                 *lane = decode_float(declared.component, bytes, declared.accessor.normalized);
             }
             element
@@ -78,10 +68,7 @@ impl Accessors<'_> {
     /// Unsigned integers.
     pub fn integers(&self, index: Index<Accessor>, user: &str) -> Result<Vec<u32>, Failure> {
         let declared = self.declared(index, user)?;
-        let unsigned = matches!(
-            declared.component,
-            ComponentType::U8 | ComponentType::U16 | ComponentType::U32
-        );
+        let unsigned = matches!(declared.component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
         if declared.lanes != 1 || !unsigned {
             return declared.fail(format!("{user} needs single unsigned integers"));
         }
@@ -96,16 +83,11 @@ impl Accessors<'_> {
 
     fn declared(&self, index: Index<Accessor>, user: &str) -> Result<Declared<'_>, Failure> {
         let Some(accessor) = self.root.accessors.get(index.value()) else {
-            let message = format!(
-                "refers to accessor {index}; there are {}",
-                self.root.accessors.len()
-            );
+            let message = format!("refers to accessor {index}; there are {}", self.root.accessors.len());
             return Err(Failure::new(user, message));
         };
         let place = format!("accessors[{index}]");
-        let (Checked::Valid(component), Checked::Valid(kind)) =
-            (&accessor.component_type, &accessor.type_)
-        else {
+        let (Checked::Valid(component), Checked::Valid(kind)) = (&accessor.component_type, &accessor.type_) else {
             return Err(Failure::new(place, "unknown type or componentType"));
         };
         let lanes = match kind {
@@ -117,22 +99,14 @@ impl Accessors<'_> {
                 return Err(Failure::new(place, format!("{user} cannot be a matrix")));
             }
         };
-        let mut declared = Declared {
-            accessor,
-            place,
-            component: component.0,
-            lanes,
-            count: 0,
-        };
+        let mut declared = Declared { accessor, place, component: component.0, lanes, count: 0 };
         let count = accessor.count.0;
         match accessor.buffer_view {
             Some(_) => {
                 self.slice(&declared, count)?;
             }
             None if count > ZEROS_MAX => {
-                return declared.fail(format!(
-                    "{count} elements without a bufferView; allowed are {ZEROS_MAX}"
-                ));
+                return declared.fail(format!("{count} elements without a bufferView; allowed are {ZEROS_MAX}"));
             }
             None => {}
         }
@@ -149,16 +123,12 @@ impl Accessors<'_> {
         let size = declared.size();
         let stride = stride.unwrap_or(size);
         if stride < size {
-            return declared.fail(format!(
-                "elements of {size} bytes, but a stride of {stride}"
-            ));
+            return declared.fail(format!("elements of {size} bytes, but a stride of {stride}"));
         }
         let offset = declared.accessor.byte_offset.map_or(0, |offset| offset.0);
         let needed = match count {
             0 => Some(offset),
-            _ => (count - 1)
-                .checked_mul(stride as u64)
-                .and_then(|n| n.checked_add(offset)?.checked_add(size as u64)),
+            _ => (count - 1).checked_mul(stride as u64).and_then(|n| n.checked_add(offset)?.checked_add(size as u64)),
         };
         match needed {
             Some(needed) if needed <= bytes.len() as u64 => Ok((&bytes[offset as usize..], stride)),
@@ -174,17 +144,12 @@ impl Accessors<'_> {
             return Ok(());
         }
         let (bytes, stride) = self.slice(declared, declared.count as u64)?;
-        (0..declared.count)
-            .for_each(|i| use_bytes(&bytes[i * stride..i * stride + declared.size()]));
+        (0..declared.count).for_each(|i| use_bytes(&bytes[i * stride..i * stride + declared.size()]));
         Ok(())
     }
 
     /// Replacements (glTF 2.0, section 3.6.2.3).
-    fn each_sparse(
-        &self,
-        declared: &Declared,
-        mut use_bytes: impl FnMut(usize, &[u8]),
-    ) -> Result<(), Failure> {
+    fn each_sparse(&self, declared: &Declared, mut use_bytes: impl FnMut(usize, &[u8])) -> Result<(), Failure> {
         let Some(sparse) = &declared.accessor.sparse else {
             return Ok(());
         };
@@ -194,31 +159,16 @@ impl Accessors<'_> {
         let count = sparse.count.0;
         let part = |view, offset: u64, size: usize| {
             let (bytes, _) = self.buffers.view(self.root, view, &declared.place)?;
-            let end = count
-                .checked_mul(size as u64)
-                .and_then(|n| n.checked_add(offset));
+            let end = count.checked_mul(size as u64).and_then(|n| n.checked_add(offset));
             match end {
                 Some(end) if end <= bytes.len() as u64 => Ok(&bytes[offset as usize..end as usize]),
-                _ => declared.fail(format!(
-                    "{count} sparse elements run over the end of bufferView {view}"
-                )),
+                _ => declared.fail(format!("{count} sparse elements run over the end of bufferView {view}")),
             }
         };
         let index_size = component.0.size();
-        let indices = part(
-            sparse.indices.buffer_view,
-            sparse.indices.byte_offset.0,
-            index_size,
-        )?;
-        let values = part(
-            sparse.values.buffer_view,
-            sparse.values.byte_offset.0,
-            declared.size(),
-        )?;
-        for (index, value) in indices
-            .chunks_exact(index_size)
-            .zip(values.chunks_exact(declared.size()))
-        {
+        let indices = part(sparse.indices.buffer_view, sparse.indices.byte_offset.0, index_size)?;
+        let values = part(sparse.values.buffer_view, sparse.values.byte_offset.0, declared.size())?;
+        for (index, value) in indices.chunks_exact(index_size).zip(values.chunks_exact(declared.size())) {
             let at = decode_unsigned(index) as usize;
             if at >= declared.count {
                 return declared.fail(format!("sparse element {at} of {}", declared.count));
@@ -231,10 +181,7 @@ impl Accessors<'_> {
 
 /// One to four bytes, little-endian.
 fn decode_unsigned(bytes: &[u8]) -> u32 {
-    bytes
-        .iter()
-        .rev()
-        .fold(0, |value, byte| value << 8 | u32::from(*byte))
+    bytes.iter().rev().fold(0, |value, byte| value << 8 | u32::from(*byte))
 }
 
 /// glTF 2.0, section 3.6.2.2 (normalized integers) and KHR_mesh_quantization (plain ones).
@@ -248,9 +195,5 @@ fn decode_float(component: ComponentType, bytes: &[u8], normalized: bool) -> f32
         ComponentType::U16 => (f64::from(bits), 65_535.0),
         ComponentType::U32 => (f64::from(bits), 4_294_967_295.0),
     };
-    if normalized {
-        (value / full_scale).max(-1.0) as f32
-    } else {
-        value as f32
-    }
+    if normalized { (value / full_scale).max(-1.0) as f32 } else { value as f32 }
 }

@@ -86,20 +86,12 @@ pub(super) fn convert(
     } else {
         make_dielectric(&mut material, surface.roughness, surface.eta);
     }
-    if let Some(transmission) = extensions
-        .and_then(|e| e.transmission.as_ref())
-        .filter(|_| !metal && !unlit)
-    {
+    if let Some(transmission) = extensions.and_then(|e| e.transmission.as_ref()).filter(|_| !metal && !unlit) {
         if transmission.transmission_texture.is_some() {
             notes.insert("transmission textures are ignored".to_owned());
         }
         let volume = extensions.and_then(|e| e.volume.as_ref());
-        transmit(
-            &mut material,
-            &surface,
-            clamp01(transmission.transmission_factor.0),
-            volume,
-        );
+        transmit(&mut material, &surface, clamp01(transmission.transmission_factor.0), volume);
     }
     match source.alpha_mode {
         Checked::Valid(AlphaMode::Blend) => {
@@ -107,10 +99,7 @@ pub(super) fn convert(
                 notes.insert("alpha textures are replaced by their mean".to_owned());
             }
             let k_t = 1.0 - surface.alpha * mean_alpha;
-            if k_t > 0.0
-                && material.transparency.is_none()
-                && !matches!(material.model, Model::Dielectric { .. })
-            {
+            if k_t > 0.0 && material.transparency.is_none() && !matches!(material.model, Model::Dielectric { .. }) {
                 material.transparency = Some(Transparency::Interpolated { k_t });
             }
         }
@@ -119,18 +108,12 @@ pub(super) fn convert(
         }
         Checked::Valid(AlphaMode::Opaque) => {}
         Checked::Invalid => {
-            return Err(Failure::new(
-                place,
-                "unknown alphaMode; allowed are OPAQUE, MASK, BLEND",
-            ));
+            return Err(Failure::new(place, "unknown alphaMode; allowed are OPAQUE, MASK, BLEND"));
         }
     }
     material.emission = emission(source, textures, &place, notes)?;
     note_ignored(source, notes);
-    Ok(Converted {
-        material,
-        coordinates,
-    })
+    Ok(Converted { material, coordinates })
 }
 
 /// NaN becomes 0.
@@ -154,10 +137,7 @@ fn surface(
     }
     let pbr = &source.pbr_metallic_roughness;
     let [r, g, b, alpha] = pbr.base_color_factor.0;
-    let (mut metallic, mut roughness) = (
-        clamp01(pbr.metallic_factor.0),
-        clamp01(pbr.roughness_factor.0),
-    );
+    let (mut metallic, mut roughness) = (clamp01(pbr.metallic_factor.0), clamp01(pbr.roughness_factor.0));
     if let Some(info) = &pbr.metallic_roughness_texture {
         notes.insert("metallic-roughness textures are replaced by their mean".to_owned());
         let mean = textures.mean(info, ColorSpace::Linear, place)?;
@@ -165,19 +145,10 @@ fn surface(
         metallic *= mean[2] as f32;
     }
     // 0 stands for infinity (KHR_materials_ior); 5 is beyond any glass.
-    let eta = extensions
-        .and_then(|e| e.ior.as_ref())
-        .map_or(1.5, |ior| ior.ior.0);
+    let eta = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |ior| ior.ior.0);
     let eta = if eta >= 1.0 { eta.min(5.0) } else { 5.0 };
     let texture = pbr.base_color_texture.clone();
-    Ok(Surface {
-        base: clamp_color([r, g, b]),
-        alpha: clamp01(alpha),
-        texture,
-        metallic,
-        roughness,
-        eta,
-    })
+    Ok(Surface { base: clamp_color([r, g, b]), alpha: clamp01(alpha), texture, metallic, roughness, eta })
 }
 
 /// KHR_materials_pbrSpecularGlossiness: a dark diffuse and a bright specular colour is a metal, else the specular colour
@@ -192,11 +163,7 @@ fn from_specular_glossiness(glossy: &PbrSpecularGlossiness) -> Surface {
     Surface {
         base: if metal { specular } else { diffuse },
         alpha: clamp01(alpha),
-        texture: if metal {
-            None
-        } else {
-            glossy.diffuse_texture.clone()
-        },
+        texture: if metal { None } else { glossy.diffuse_texture.clone() },
         metallic: f32::from(u8::from(metal)),
         roughness: 1.0 - clamp01(glossy.glossiness_factor.0),
         eta,
@@ -204,10 +171,7 @@ fn from_specular_glossiness(glossy: &PbrSpecularGlossiness) -> Surface {
 }
 
 fn slope(roughness: f32) -> Vec<Lobe> {
-    vec![Lobe {
-        m: (roughness * roughness).max(SLOPE_MIN),
-        weight: 1.0,
-    }]
+    vec![Lobe { m: (roughness * roughness).max(SLOPE_MIN), weight: 1.0 }]
 }
 
 fn make_metal(material: &mut Material, roughness: f32) {
@@ -218,20 +182,9 @@ fn make_metal(material: &mut Material, roughness: f32) {
     // The hue goes into the specular colour, which also tints the mirror branch; the brightness into eta and k.
     let brightest = material.color.max_element();
     let (eta, k) = conductor(f64::from(brightest), EDGE_TINT);
-    material.specular_color = if brightest > 0.0 {
-        material.color / brightest
-    } else {
-        Rgb::ONE
-    };
-    let fresnel = Fresnel::Conductor {
-        eta: Rgb::splat(eta as f32),
-        k: Rgb::splat(k as f32),
-    };
-    material.model = Model::CookTorrance {
-        lobes: slope(roughness),
-        fresnel,
-        normalisation_1982: false,
-    };
+    material.specular_color = if brightest > 0.0 { material.color / brightest } else { Rgb::ONE };
+    let fresnel = Fresnel::Conductor { eta: Rgb::splat(eta as f32), k: Rgb::splat(k as f32) };
+    material.model = Model::CookTorrance { lobes: slope(roughness), fresnel, normalisation_1982: false };
     (material.k_d, material.k_s) = (0.0, 1.0);
     material.k_r = brightest * (1.0 - roughness) * (1.0 - roughness);
 }
@@ -246,14 +199,8 @@ pub(super) fn conductor(r: f64, g: f64) -> (f64, f64) {
 }
 
 fn make_dielectric(material: &mut Material, roughness: f32, eta: f32) {
-    let fresnel = Fresnel::Dielectric {
-        eta: eta.max(1.0001),
-    };
-    material.model = Model::CookTorrance {
-        lobes: slope(roughness),
-        fresnel,
-        normalisation_1982: false,
-    };
+    let fresnel = Fresnel::Dielectric { eta: eta.max(1.0001) };
+    material.model = Model::CookTorrance { lobes: slope(roughness), fresnel, normalisation_1982: false };
     (material.k_d, material.k_s) = (1.0 - SPECULAR_SHARE, SPECULAR_SHARE);
     material.color /= 1.0 - SPECULAR_SHARE;
     material.k_a = 1.0 - SPECULAR_SHARE;
@@ -271,27 +218,17 @@ fn transmit(material: &mut Material, surface: &Surface, factor: f32, volume: Opt
     let solid = volume.filter(|v| v.thickness_factor.0 > 0.0 && factor > 0.5);
     let Some(volume) = solid else {
         material.color *= 1.0 - factor;
-        material.transparency = Some(Transparency::Filtered {
-            k_t: factor,
-            color: surface.base,
-        });
+        material.transparency = Some(Transparency::Filtered { k_t: factor, color: surface.base });
         return;
     };
     // attenuationColor is what is left after attenuationDistance: sigma = -ln(color) / distance.
     let distance = f64::from(volume.attenuation_distance.0);
     let absorption = volume.attenuation_color.0.map(|c| {
         let sigma = -libm::log(f64::from(clamp01(c)).max(1e-6)) / distance;
-        if sigma.is_finite() && sigma > 0.0 {
-            sigma as f32
-        } else {
-            0.0
-        }
+        if sigma.is_finite() && sigma > 0.0 { sigma as f32 } else { 0.0 }
     });
     let absorption = Rgb::from_array(absorption);
-    material.model = Model::Dielectric {
-        eta: surface.eta.max(1.0001),
-        absorption,
-    };
+    material.model = Model::Dielectric { eta: surface.eta.max(1.0001), absorption };
     material.specular_color = surface.base;
     (material.color, material.color_texture) = (Rgb::ONE, None);
     (material.k_a, material.k_d, material.k_s, material.k_r) = (0.0, 0.0, 1.0, 0.0);
@@ -303,16 +240,9 @@ fn emission(
     place: &str,
     notes: &mut BTreeSet<String>,
 ) -> Result<Rgb, Failure> {
-    let strength = source
-        .extensions
-        .as_ref()
-        .and_then(|e| e.emissive_strength.as_ref());
+    let strength = source.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref());
     let strength = strength.map_or(1.0, |s| s.emissive_strength.0);
-    let strength = if strength > 0.0 {
-        strength.min(1e6)
-    } else {
-        0.0
-    };
+    let strength = if strength > 0.0 { strength.min(1e6) } else { 0.0 };
     let mut emission = clamp_color(source.emissive_factor.0) * strength;
     if let (Some(info), true) = (&source.emissive_texture, emission != Rgb::ZERO) {
         notes.insert("emissive textures are replaced by their mean".to_owned());

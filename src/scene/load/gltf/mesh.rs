@@ -24,44 +24,27 @@ pub(super) fn read(
     let Checked::Valid(mode) = primitive.mode else {
         return Err(Failure::new(place, "unknown mode; allowed are 0 to 6"));
     };
-    if !matches!(
-        mode,
-        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
-    ) {
+    if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
         notes.insert("points and lines are not drawn".to_owned());
         return Ok(None);
     }
     for name in ["KHR_draco_mesh_compression", "EXT_meshopt_compression"] {
-        if primitive
-            .extensions
-            .as_ref()
-            .is_some_and(|e| e.others.contains_key(name))
-        {
-            return Err(Failure::new(
-                place,
-                format!("compressed by {name}, which is not supported"),
-            ));
+        if primitive.extensions.as_ref().is_some_and(|e| e.others.contains_key(name)) {
+            return Err(Failure::new(place, format!("compressed by {name}, which is not supported")));
         }
     }
-    let attribute =
-        |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
+    let attribute = |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
     let user = |name: &str| format!("{place}.attributes.{name}");
     let Some(position) = attribute(Semantic::Positions) else {
         notes.insert("a primitive without POSITION is not drawn".to_owned());
         return Ok(None);
     };
     let positions = vectors(accessors, position, &user("POSITION"))?;
-    let mut mesh = Mesh {
-        positions,
-        ..Mesh::default()
-    };
+    let mut mesh = Mesh { positions, ..Mesh::default() };
     let count = mesh.positions.len();
     let same_count = |n: usize, name: &str| match n == count {
         true => Ok(()),
-        false => Err(Failure::new(
-            user(name),
-            format!("{n} elements; POSITION has {count}"),
-        )),
+        false => Err(Failure::new(user(name), format!("{n} elements; POSITION has {count}"))),
     };
     if let Some(index) = attribute(Semantic::Normals) {
         mesh.normals = vectors(accessors, index, &user("NORMAL"))?;
@@ -71,29 +54,20 @@ pub(super) fn read(
         let colors = accessors.floats::<4>(index, &user("COLOR_0"), Some(1.0))?;
         same_count(colors.len(), "COLOR_0")?;
         let channel = |c: f32| if c > 0.0 { c.min(1e6) } else { 0.0 };
-        mesh.colors = colors
-            .iter()
-            .map(|c| Vec3::new(channel(c[0]), channel(c[1]), channel(c[2])))
-            .collect();
+        mesh.colors = colors.iter().map(|c| Vec3::new(channel(c[0]), channel(c[1]), channel(c[2]))).collect();
     }
     let set = coordinates.map_or(0, |c| c.set);
     if let Some(index) = attribute(Semantic::TexCoords(set)) {
         let name = format!("TEXCOORD_{set}");
         let uvs = accessors.floats::<2>(index, &user(&name), None)?;
         same_count(uvs.len(), &name)?;
-        mesh.uvs = uvs
-            .into_iter()
-            .map(|uv| place_uv(uv, coordinates))
-            .collect();
+        mesh.uvs = uvs.into_iter().map(|uv| place_uv(uv, coordinates)).collect();
     } else if coordinates.is_some() {
         notes.insert(format!("{place} has a texture but no TEXCOORD_{set}"));
     }
     morph(accessors, primitive, place, weights, &mut mesh)?;
     if let Some(i) = mesh.positions.iter().position(|p| !p.is_finite()) {
-        return Err(Failure::new(
-            user("POSITION"),
-            format!("element {i} is not finite"),
-        ));
+        return Err(Failure::new(user("POSITION"), format!("element {i} is not finite")));
     }
     let corners = match primitive.indices {
         Some(index) => accessors.integers(index, &format!("{place}.indices"))?,
@@ -105,25 +79,14 @@ pub(super) fn read(
     }
     mesh.triangles = triangles(mode, &corners);
     if corners.len() % 3 != 0 && mode == Mode::Triangles {
-        notes.insert(format!(
-            "{place} has {} indices; the last few make no triangle",
-            corners.len()
-        ));
+        notes.insert(format!("{place} has {} indices; the last few make no triangle", corners.len()));
     }
     shape::repair_normals(&mut mesh);
     Ok((!mesh.triangles.is_empty()).then_some(mesh))
 }
 
-fn vectors(
-    accessors: &Accessors,
-    index: Index<Accessor>,
-    user: &str,
-) -> Result<Vec<Vec3>, Failure> {
-    Ok(accessors
-        .floats::<3>(index, user, None)?
-        .into_iter()
-        .map(Vec3::from_array)
-        .collect())
+fn vectors(accessors: &Accessors, index: Index<Accessor>, user: &str) -> Result<Vec<Vec3>, Failure> {
+    Ok(accessors.floats::<3>(index, user, None)?.into_iter().map(Vec3::from_array).collect())
 }
 
 /// glTF's v points down the image, ours up.
@@ -146,24 +109,16 @@ fn morph(
 ) -> Result<(), Failure> {
     let targets = primitive.targets.iter().flatten().zip(weights).enumerate();
     for (i, (target, &weight)) in targets.filter(|(_, (_, weight))| **weight != 0.0) {
-        let add = |index: Option<Index<Accessor>>,
-                   name: &str,
-                   to: &mut Vec<Vec3>|
-         -> Result<(), Failure> {
+        let add = |index: Option<Index<Accessor>>, name: &str, to: &mut Vec<Vec3>| -> Result<(), Failure> {
             let (Some(index), false) = (index, to.is_empty()) else {
                 return Ok(());
             };
             let user = format!("{place}.targets[{i}].{name}");
             let offsets = vectors(accessors, index, &user)?;
             if offsets.len() != to.len() {
-                return Err(Failure::new(
-                    user,
-                    format!("{} elements; {} are needed", offsets.len(), to.len()),
-                ));
+                return Err(Failure::new(user, format!("{} elements; {} are needed", offsets.len(), to.len())));
             }
-            to.iter_mut()
-                .zip(&offsets)
-                .for_each(|(v, offset)| *v += *offset * weight);
+            to.iter_mut().zip(&offsets).for_each(|(v, offset)| *v += *offset * weight);
             Ok(())
         };
         add(target.positions, "POSITION", &mut mesh.positions)?;
@@ -177,9 +132,7 @@ fn triangles(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {
     let mut out = Vec::new();
     match mode {
         Mode::TriangleStrip => unroll_strip(corners, &mut out),
-        Mode::TriangleFan => {
-            out.extend(corners.windows(2).skip(1).map(|w| [w[0], w[1], corners[0]]))
-        }
+        Mode::TriangleFan => out.extend(corners.windows(2).skip(1).map(|w| [w[0], w[1], corners[0]])),
         _ => out.extend(corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]])),
     }
     out

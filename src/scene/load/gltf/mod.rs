@@ -54,10 +54,7 @@ const VERTICES_MAX: usize = 1 << 27;
 
 /// Loads the file as a scene. `load::load` stages what it has no camera or light for.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
-    let bytes = std::fs::read(path).map_err(|source| SceneError::Io {
-        location: Location::file(path),
-        source,
-    })?;
+    let bytes = std::fs::read(path).map_err(|source| SceneError::Io { location: Location::file(path), source })?;
     scene_from_bytes(&bytes, path)
 }
 
@@ -86,34 +83,20 @@ enum Failure {
 
 impl Failure {
     fn new(place: impl Into<String>, message: impl Into<String>) -> Self {
-        Self::Bad {
-            place: place.into(),
-            message: message.into(),
-        }
+        Self::Bad { place: place.into(), message: message.into() }
     }
 
     fn at(self, path: &Path) -> SceneError {
         match self {
-            Self::Bad { place, message } => {
-                SceneError::bad(Location::file(path), format!("{place}: {message}"))
-            }
+            Self::Bad { place, message } => SceneError::bad(Location::file(path), format!("{place}: {message}")),
             Self::Json(error) => {
-                let location = Location {
-                    file: path.to_owned(),
-                    line: error.line() as u32,
-                    column: error.column() as u32,
-                };
+                let location =
+                    Location { file: path.to_owned(), line: error.line() as u32, column: error.column() as u32 };
                 // Its own "at line 1 column 2" would say it twice.
                 let message = error.to_string();
-                SceneError::bad(
-                    location,
-                    message.split(" at line ").next().unwrap_or(&message),
-                )
+                SceneError::bad(location, message.split(" at line ").next().unwrap_or(&message))
             }
-            Self::Io { file, source } => SceneError::Io {
-                location: Location::file(file),
-                source,
-            },
+            Self::Io { file, source } => SceneError::Io { location: Location::file(file), source },
             Self::Other(error) => *error,
         }
     }
@@ -178,28 +161,18 @@ fn parse(json: &[u8]) -> Result<Root, Failure> {
         Err(error) => error,
     };
     let mut document: serde_json::Value = serde_json::from_slice(json).map_err(Failure::Json)?;
-    if let Some(animations) = document
-        .get_mut("animations")
-        .and_then(|a| a.as_array_mut())
-    {
+    if let Some(animations) = document.get_mut("animations").and_then(|a| a.as_array_mut()) {
         animations.clear();
     }
     serde_json::from_value(document).map_err(|_| Failure::Json(first))
 }
 
 fn check_version(root: &Root) -> Result<(), Failure> {
-    let version = root
-        .asset
-        .min_version
-        .as_ref()
-        .unwrap_or(&root.asset.version);
+    let version = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
     if version == "2.0" || (root.asset.min_version.is_none() && version.starts_with("2.")) {
         return Ok(());
     }
-    Err(Failure::new(
-        "asset",
-        format!("version {}; only 2.0 is known", version.escape_debug()),
-    ))
+    Err(Failure::new("asset", format!("version {}; only 2.0 is known", version.escape_debug())))
 }
 
 fn check_extensions(root: &Root, notes: &mut BTreeSet<String>) -> Result<(), Failure> {
@@ -212,10 +185,7 @@ fn check_extensions(root: &Root, notes: &mut BTreeSet<String>) -> Result<(), Fai
         .map(|name| name.escape_debug().to_string())
         .collect();
     if !missing.is_empty() {
-        return Err(Failure::new(
-            "extensionsRequired",
-            format!("not supported: {}", missing.join(", ")),
-        ));
+        return Err(Failure::new("extensionsRequired", format!("not supported: {}", missing.join(", "))));
     }
     for name in root.extensions_used.iter().filter(|name| !known(name)) {
         notes.insert(format!("extension {} is ignored", name.escape_debug()));
@@ -225,54 +195,29 @@ fn check_extensions(root: &Root, notes: &mut BTreeSet<String>) -> Result<(), Fai
 
 impl Loader<'_> {
     /// The parts of mesh `index`, read on first use; `weights` override the mesh's own. `user` refers to it.
-    fn mesh_parts(
-        &mut self,
-        index: usize,
-        weights: Option<&[f32]>,
-        user: &str,
-    ) -> Result<Vec<Part>, Failure> {
+    fn mesh_parts(&mut self, index: usize, weights: Option<&[f32]>, user: &str) -> Result<Vec<Part>, Failure> {
         let root = self.root;
         let Some(mesh) = root.meshes.get(index) else {
             let message = format!("refers to mesh {index}; there are {}", root.meshes.len());
             return Err(Failure::new(user, message));
         };
         let weights = weights.or(mesh.weights.as_deref()).unwrap_or(&[]);
-        let key = (
-            index,
-            weights.iter().map(|w| w.to_bits()).collect::<Vec<u32>>(),
-        );
+        let key = (index, weights.iter().map(|w| w.to_bits()).collect::<Vec<u32>>());
         if let Some(parts) = self.parts.get(&key) {
             return Ok(parts.clone());
         }
         let mut parts = Vec::new();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let place = format!("meshes[{index}].primitives[{i}]");
-            let (material, coordinates) =
-                self.material(primitive.material.map(|m| m.value()), &place)?;
-            let accessors = Accessors {
-                root,
-                buffers: self.buffers,
-            };
-            let read = mesh::read(
-                &accessors,
-                primitive,
-                &place,
-                weights,
-                coordinates,
-                &mut self.notes,
-            )?;
+            let (material, coordinates) = self.material(primitive.material.map(|m| m.value()), &place)?;
+            let accessors = Accessors { root, buffers: self.buffers };
+            let read = mesh::read(&accessors, primitive, &place, weights, coordinates, &mut self.notes)?;
             let Some(mut read) = read else { continue };
             self.vertices += read.positions.len() + read.triangles.len();
             if self.vertices > VERTICES_MAX {
-                return Err(Failure::new(
-                    place,
-                    format!("more than {VERTICES_MAX} vertices and triangles in all"),
-                ));
+                return Err(Failure::new(place, format!("more than {VERTICES_MAX} vertices and triangles in all")));
             }
-            read.name = mesh
-                .name
-                .clone()
-                .unwrap_or_else(|| format!("meshes[{index}]"));
+            read.name = mesh.name.clone().unwrap_or_else(|| format!("meshes[{index}]"));
             self.scene.meshes.push(read);
             parts.push((MeshId(self.scene.meshes.len() as u32 - 1), material));
         }
@@ -281,11 +226,7 @@ impl Loader<'_> {
     }
 
     /// Material `index`, or the default one.
-    fn material(
-        &mut self,
-        index: Option<usize>,
-        user: &str,
-    ) -> Result<(MaterialId, Option<Coordinates>), Failure> {
+    fn material(&mut self, index: Option<usize>, user: &str) -> Result<(MaterialId, Option<Coordinates>), Failure> {
         if let Some(made) = self.materials.get(&index) {
             return Ok(*made);
         }
@@ -293,48 +234,28 @@ impl Loader<'_> {
             None => (Material::grey("default"), None),
             Some(i) => {
                 let Some(source) = self.root.materials.get(i) else {
-                    let message = format!(
-                        "refers to material {i}; there are {}",
-                        self.root.materials.len()
-                    );
+                    let message = format!("refers to material {i}; there are {}", self.root.materials.len());
                     return Err(Failure::new(user, message));
                 };
-                let converted = material::convert(
-                    source,
-                    i,
-                    &mut self.textures,
-                    &mut self.scene,
-                    &mut self.notes,
-                )?;
+                let converted = material::convert(source, i, &mut self.textures, &mut self.scene, &mut self.notes)?;
                 (converted.material, converted.coordinates)
             }
         };
         self.scene.materials.push(material);
-        let made = (
-            MaterialId(self.scene.materials.len() as u32 - 1),
-            coordinates,
-        );
+        let made = (MaterialId(self.scene.materials.len() as u32 - 1), coordinates);
         self.materials.insert(index, made);
         Ok(made)
     }
 
     /// A file without scenes and nodes is a library; its meshes are shown as they are.
     fn add_loose_meshes(&mut self) -> Result<(), Failure> {
-        if !self.root.scenes.is_empty()
-            || !self.root.nodes.is_empty()
-            || self.root.meshes.is_empty()
-        {
+        if !self.root.scenes.is_empty() || !self.root.nodes.is_empty() || self.root.meshes.is_empty() {
             return Ok(());
         }
-        self.notes
-            .insert("there is no scene: all meshes are drawn as they are".to_owned());
+        self.notes.insert("there is no scene: all meshes are drawn as they are".to_owned());
         for index in 0..self.root.meshes.len() {
             let parts = self.mesh_parts(index, None, "meshes")?;
-            self.add_objects(
-                &parts,
-                &format!("meshes[{index}]"),
-                glam::DAffine3::IDENTITY,
-            )?;
+            self.add_objects(&parts, &format!("meshes[{index}]"), glam::DAffine3::IDENTITY)?;
         }
         Ok(())
     }

@@ -23,16 +23,10 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Failure> {
         return Err(Failure::new("GLB header", "the file ends within it"));
     };
     if version != 2 {
-        return Err(Failure::new(
-            "GLB header",
-            format!("version {version}; only 2 is known"),
-        ));
+        return Err(Failure::new("GLB header", format!("version {version}; only 2 is known")));
     }
     if length as usize > bytes.len() {
-        return Err(Failure::new(
-            "GLB header",
-            format!("claims {length} bytes; the file has {}", bytes.len()),
-        ));
+        return Err(Failure::new("GLB header", format!("claims {length} bytes; the file has {}", bytes.len())));
     }
     let (mut at, mut json, mut binary) = (12, None, None);
     while at < length as usize {
@@ -40,14 +34,8 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Failure> {
         let (Some(size), Some(kind)) = (word(at), word(at + 4)) else {
             return Err(Failure::new(place, "the file ends within its header"));
         };
-        let Some(data) = bytes
-            .get(at + 8..)
-            .and_then(|rest| rest.get(..size as usize))
-        else {
-            return Err(Failure::new(
-                place,
-                format!("claims {size} bytes; {} follow", bytes.len() - at - 8),
-            ));
+        let Some(data) = bytes.get(at + 8..).and_then(|rest| rest.get(..size as usize)) else {
+            return Err(Failure::new(place, format!("claims {size} bytes; {} follow", bytes.len() - at - 8)));
         };
         match kind {
             JSON if json.is_none() => json = Some(data),
@@ -74,10 +62,7 @@ impl<'a> Buffers<'a> {
                 (Some(uri), _) => Cow::Owned(read_uri(uri, folder, &place)?),
                 (None, Some(binary)) if i == 0 => Cow::Borrowed(binary),
                 (None, _) => {
-                    return Err(Failure::new(
-                        place,
-                        "has no uri, and there is no binary chunk for it",
-                    ));
+                    return Err(Failure::new(place, "has no uri, and there is no binary chunk for it"));
                 }
             };
             let length = buffer.byte_length.0;
@@ -91,14 +76,7 @@ impl<'a> Buffers<'a> {
             }
             Ok(data)
         };
-        Ok(Self {
-            data: root
-                .buffers
-                .iter()
-                .enumerate()
-                .map(read)
-                .collect::<Result<_, _>>()?,
-        })
+        Ok(Self { data: root.buffers.iter().enumerate().map(read).collect::<Result<_, _>>()? })
     }
 
     /// The bytes of a buffer view, and its stride if it has one. `place` refers to it.
@@ -109,19 +87,12 @@ impl<'a> Buffers<'a> {
         place: &str,
     ) -> Result<(&[u8], Option<usize>), Failure> {
         let Some(view) = root.buffer_views.get(index.value()) else {
-            let message = format!(
-                "refers to bufferView {index}; there are {}",
-                root.buffer_views.len()
-            );
+            let message = format!("refers to bufferView {index}; there are {}", root.buffer_views.len());
             return Err(Failure::new(place, message));
         };
         let place = format!("bufferViews[{index}]");
         let Some(data) = self.data.get(view.buffer.value()) else {
-            let message = format!(
-                "refers to buffer {}; there are {}",
-                view.buffer,
-                self.data.len()
-            );
+            let message = format!("refers to buffer {}; there are {}", view.buffer, self.data.len());
             return Err(Failure::new(place, message));
         };
         let start = view.byte_offset.map_or(0, |offset| offset.0);
@@ -147,16 +118,10 @@ pub(super) fn read_uri(uri: &str, folder: &Path, place: &str) -> Result<Vec<u8>,
         return decode_data(rest).map_err(|message| Failure::new(place, message));
     }
     let path = file_of(uri, folder).map_err(|message| Failure::new(place, message))?;
-    let failure = |source| Failure::Io {
-        file: path.clone(),
-        source,
-    };
+    let failure = |source| Failure::Io { file: path.clone(), source };
     // Devices and pipes have no end.
     if !std::fs::metadata(&path).map_err(failure)?.is_file() {
-        return Err(Failure::new(
-            place,
-            format!("`{}` is not a file", path.display()),
-        ));
+        return Err(Failure::new(place, format!("`{}` is not a file", path.display())));
     }
     std::fs::read(&path).map_err(failure)
 }
@@ -165,14 +130,10 @@ pub(super) fn read_uri(uri: &str, folder: &Path, place: &str) -> Result<Vec<u8>,
 pub(super) fn file_of(uri: &str, folder: &Path) -> Result<PathBuf, String> {
     let scheme = uri.split_once(':').map(|(scheme, _)| scheme);
     // One letter is a drive, not a scheme.
-    if let Some(scheme) = scheme.filter(|s| {
-        s.len() > 1
-            && s.bytes()
-                .all(|b| b.is_ascii_alphanumeric() || b"+-.".contains(&b))
-    }) {
-        return Err(format!(
-            "cannot read URIs of scheme `{scheme}`; allowed are data: and relative files"
-        ));
+    if let Some(scheme) =
+        scheme.filter(|s| s.len() > 1 && s.bytes().all(|b| b.is_ascii_alphanumeric() || b"+-.".contains(&b)))
+    {
+        return Err(format!("cannot read URIs of scheme `{scheme}`; allowed are data: and relative files"));
     }
     Ok(folder.join(percent_decode(uri)?))
 }
@@ -184,14 +145,8 @@ fn decode_data(rest: &str) -> Result<Vec<u8>, String> {
     if !kind.ends_with(";base64") {
         return percent_decode(data).map(String::into_bytes);
     }
-    let engine = if data.ends_with('=') {
-        &STANDARD
-    } else {
-        &STANDARD_NO_PAD
-    };
-    engine
-        .decode(data)
-        .map_err(|e| format!("the data URI is not base64: {e}"))
+    let engine = if data.ends_with('=') { &STANDARD } else { &STANDARD_NO_PAD };
+    engine.decode(data).map_err(|e| format!("the data URI is not base64: {e}"))
 }
 
 /// RFC 3986, section 2.1.

@@ -92,15 +92,11 @@ impl Element {
 
     /// The place of the scalar property with one of these names.
     pub fn find(&self, names: &[&str]) -> Option<usize> {
-        self.properties
-            .iter()
-            .position(|p| p.length.is_none() && names.contains(&p.name.as_str()))
+        self.properties.iter().position(|p| p.length.is_none() && names.contains(&p.name.as_str()))
     }
 
     pub fn find_list(&self, names: &[&str]) -> Option<usize> {
-        self.properties
-            .iter()
-            .position(|p| p.length.is_some() && names.contains(&p.name.as_str()))
+        self.properties.iter().position(|p| p.length.is_some() && names.contains(&p.name.as_str()))
     }
 }
 
@@ -125,10 +121,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Failure> {
     let (mut at, mut line_number) = (0, 0);
     loop {
         let Some((line, next)) = next_line(bytes, at) else {
-            return Err((
-                Place::Line(line_number + 1),
-                "the header has no end_header".to_owned(),
-            ));
+            return Err((Place::Line(line_number + 1), "the header has no end_header".to_owned()));
         };
         at = next;
         line_number += 1;
@@ -164,11 +157,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Failure> {
                 }
             }
             ["element", name, count] => match count.parse() {
-                Ok(count) => elements.push(Element {
-                    name: (*name).to_owned(),
-                    count,
-                    properties: Vec::new(),
-                }),
+                Ok(count) => elements.push(Element { name: (*name).to_owned(), count, properties: Vec::new() }),
                 Err(_) => return fail(format!("`{count}` is not a count of elements")),
             },
             ["property", rest @ ..] => {
@@ -181,25 +170,14 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Failure> {
                 }
             }
             _ => {
-                return fail(format!(
-                    "unknown header line `{}`",
-                    line.trim().escape_debug()
-                ));
+                return fail(format!("unknown header line `{}`", line.trim().escape_debug()));
             }
         }
     }
     let Some(encoding) = encoding else {
-        return Err((
-            Place::Line(line_number),
-            "the header has no format line".to_owned(),
-        ));
+        return Err((Place::Line(line_number), "the header has no format line".to_owned()));
     };
-    Ok(Header {
-        encoding,
-        elements,
-        end: at,
-        lines: line_number,
-    })
+    Ok(Header { encoding, elements, end: at, lines: line_number })
 }
 
 /// The line that starts at `at`, without its end, and where the next one starts. Ends are \n, \r\n or a lone \r.
@@ -209,11 +187,7 @@ fn next_line(bytes: &[u8], at: usize) -> Option<(&[u8], usize)> {
         // The last line of the header may be the last of the file.
         return (rest == b"end_header").then_some((rest, bytes.len()));
     };
-    let end = if rest[length..].starts_with(b"\r\n") {
-        length + 2
-    } else {
-        length + 1
-    };
+    let end = if rest[length..].starts_with(b"\r\n") { length + 2 } else { length + 1 };
     Some((&rest[..length], at + end))
 }
 
@@ -228,17 +202,9 @@ fn property(words: &[&str]) -> Result<Property, String> {
             if length.is_float() {
                 return Err("the length of a list has an integer type".to_owned());
             }
-            Ok(Property {
-                name: (*name).to_owned(),
-                length: Some(length),
-                item: scalar(item)?,
-            })
+            Ok(Property { name: (*name).to_owned(), length: Some(length), item: scalar(item)? })
         }
-        [item, name] if *item != "list" => Ok(Property {
-            name: (*name).to_owned(),
-            length: None,
-            item: scalar(item)?,
-        }),
+        [item, name] if *item != "list" => Ok(Property { name: (*name).to_owned(), length: None, item: scalar(item)? }),
         _ => Err("a property is `property TYPE NAME` or `property list TYPE TYPE NAME`".to_owned()),
     }
 }

@@ -8,9 +8,7 @@ mod numbers;
 
 use super::image::srgb_to_linear;
 use super::{polygon, staging};
-use crate::scene::{
-    Geometry, Location, Material, MaterialId, Mesh, MeshId, Object, Scene, SceneError, Transform,
-};
+use crate::scene::{Geometry, Location, Material, MaterialId, Mesh, MeshId, Object, Scene, SceneError, Transform};
 use glam::{Vec2, Vec3};
 use header::{Element, Header};
 use numbers::{Reader, Values};
@@ -47,10 +45,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
 
 /// Reads the mesh in the file `path`, without normals if it has none.
 pub fn read_mesh(path: &Path) -> Result<Mesh, SceneError> {
-    let bytes = std::fs::read(path).map_err(|source| SceneError::Io {
-        location: Location::file(path),
-        source,
-    })?;
+    let bytes = std::fs::read(path).map_err(|source| SceneError::Io { location: Location::file(path), source })?;
     mesh_from_bytes(&bytes, path)
 }
 
@@ -66,9 +61,7 @@ pub fn mesh_from_bytes(bytes: &[u8], name: &Path) -> Result<Mesh, SceneError> {
             Place::Byte(at) => SceneError::bad(location, format!("byte {at}: {message}")),
         }
     })?;
-    mesh.name = name
-        .file_stem()
-        .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    mesh.name = name.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     crate::scene::shape::repair_normals(&mut mesh);
     Ok(mesh)
 }
@@ -85,25 +78,16 @@ fn parse(bytes: &[u8]) -> Result<Mesh, Failure> {
         match element.name.as_str() {
             "vertex" if mesh.positions.is_empty() => {
                 let columns = Columns::find(element).map_err(|message| (end_of_header, message))?;
-                each(&mut reader, element, |values| {
-                    columns.push(values, &mut mesh)
-                })?;
+                each(&mut reader, element, |values| columns.push(values, &mut mesh))?;
             }
             "face" => match element.find_list(&["vertex_indices", "vertex_index"]) {
-                Some(list) => each(&mut reader, element, |values| {
-                    push_face(values.list(list), &mut mesh)
-                })?,
+                Some(list) => each(&mut reader, element, |values| push_face(values.list(list), &mut mesh))?,
                 None => {
-                    return Err((
-                        end_of_header,
-                        "element face has no list vertex_indices".to_owned(),
-                    ));
+                    return Err((end_of_header, "element face has no list vertex_indices".to_owned()));
                 }
             },
             "tristrips" => match element.find_list(&["vertex_indices", "vertex_index"]) {
-                Some(list) => each(&mut reader, element, |values| {
-                    push_strip(values.list(list), &mut mesh)
-                })?,
+                Some(list) => each(&mut reader, element, |values| push_strip(values.list(list), &mut mesh))?,
                 None => each(&mut reader, element, |_| Ok(()))?,
             },
             _ => each(&mut reader, element, |_| Ok(()))?,
@@ -120,9 +104,7 @@ fn parse(bytes: &[u8]) -> Result<Mesh, Failure> {
 fn check_count(element: &Element, header: &Header, reader: &Reader) -> Result<(), Failure> {
     // The last number of a text file needs no separator.
     let room = reader.remaining() as u64 + u64::from(header.encoding == header::Encoding::Ascii);
-    let needed = element
-        .count
-        .saturating_mul(element.size_min(header.encoding) as u64);
+    let needed = element.count.saturating_mul(element.size_min(header.encoding) as u64);
     if needed > room {
         let message = format!(
             "element {} claims {} items of at least {} bytes, but only {} bytes follow",
@@ -134,10 +116,7 @@ fn check_count(element: &Element, header: &Header, reader: &Reader) -> Result<()
         return Err((reader.place(), message));
     }
     if element.count > u64::from(u32::MAX) && !element.properties.is_empty() {
-        return Err((
-            reader.place(),
-            format!("element {} claims {} items", element.name, element.count),
-        ));
+        return Err((reader.place(), format!("element {} claims {} items", element.name, element.count)));
     }
     Ok(())
 }
@@ -154,19 +133,10 @@ fn each(
     let mut values = Values::default();
     for index in 0..element.count {
         let before = reader.place();
-        let read = reader
-            .read(element, &mut values)
-            .and_then(|()| use_values(&values));
+        let read = reader.read(element, &mut values).and_then(|()| use_values(&values));
         if let Err(message) = read {
-            let place = if matches!(before, Place::Line(_)) {
-                reader.place()
-            } else {
-                before
-            };
-            return Err((
-                place,
-                format!("{} {index} of {}: {message}", element.name, element.count),
-            ));
+            let place = if matches!(before, Place::Line(_)) { reader.place() } else { before };
+            return Err((place, format!("{} {index} of {}: {message}", element.name, element.count)));
         }
     }
     Ok(())
@@ -183,44 +153,25 @@ struct Columns {
 
 impl Columns {
     fn find(element: &Element) -> Result<Self, String> {
-        let three = |names: [&[&str]; 3]| {
-            Some([
-                element.find(names[0])?,
-                element.find(names[1])?,
-                element.find(names[2])?,
-            ])
-        };
+        let three =
+            |names: [&[&str]; 3]| Some([element.find(names[0])?, element.find(names[1])?, element.find(names[2])?]);
         let Some(position) = three([&["x"], &["y"], &["z"]]) else {
             return Err("element vertex has no properties x, y, z".to_owned());
         };
-        let uv = [
-            ("s", "t"),
-            ("u", "v"),
-            ("texture_u", "texture_v"),
-            ("texture_s", "texture_t"),
-        ]
-        .iter()
-        .find_map(|(u, v)| Some([element.find(&[u])?, element.find(&[v])?]));
-        let red: [&[&str]; 3] = [
-            &["red", "r", "diffuse_red"],
-            &["green", "g", "diffuse_green"],
-            &["blue", "b", "diffuse_blue"],
-        ];
+        let uv = [("s", "t"), ("u", "v"), ("texture_u", "texture_v"), ("texture_s", "texture_t")]
+            .iter()
+            .find_map(|(u, v)| Some([element.find(&[u])?, element.find(&[v])?]));
+        let red: [&[&str]; 3] =
+            [&["red", "r", "diffuse_red"], &["green", "g", "diffuse_green"], &["blue", "b", "diffuse_blue"]];
         let color = three(red).map(|columns| {
             let item = element.properties[columns[0]].item;
             (columns, !item.is_float(), item.full_scale())
         });
-        Ok(Self {
-            position,
-            normal: three([&["nx"], &["ny"], &["nz"]]),
-            uv,
-            color,
-        })
+        Ok(Self { position, normal: three([&["nx"], &["ny"], &["nz"]]), uv, color })
     }
 
     fn push(&self, values: &Values, mesh: &mut Mesh) -> Result<(), String> {
-        let vector =
-            |columns: [usize; 3]| Vec3::from_array(columns.map(|c| values.scalars[c] as f32));
+        let vector = |columns: [usize; 3]| Vec3::from_array(columns.map(|c| values.scalars[c] as f32));
         let position = vector(self.position);
         if !position.is_finite() {
             return Err(format!("the position {position} is not finite"));
@@ -257,15 +208,9 @@ fn push_face(items: &[f64], mesh: &mut Mesh) -> Result<(), String> {
     if items.len() < 3 {
         return Err(format!("a face of {} corners", items.len()));
     }
-    let corners = items
-        .iter()
-        .map(|v| index(*v))
-        .collect::<Result<Vec<u32>, String>>()?;
+    let corners = items.iter().map(|v| index(*v)).collect::<Result<Vec<u32>, String>>()?;
     // Faces may come before vertices; then their range is known at the end only.
-    if let Some(outside) = corners
-        .iter()
-        .find(|c| !mesh.positions.is_empty() && **c as usize >= mesh.positions.len())
-    {
+    if let Some(outside) = corners.iter().find(|c| !mesh.positions.is_empty() && **c as usize >= mesh.positions.len()) {
         return Err(format!("vertex {outside} of {}", mesh.positions.len()));
     }
     polygon::triangulate(&corners, &mesh.positions, &mut mesh.triangles);
@@ -275,10 +220,7 @@ fn push_face(items: &[f64], mesh: &mut Mesh) -> Result<(), String> {
 /// Triangle strips; -1 starts a new one.
 fn push_strip(items: &[f64], mesh: &mut Mesh) -> Result<(), String> {
     for strip in items.split(|v| *v == -1.0) {
-        let corners = strip
-            .iter()
-            .map(|v| index(*v))
-            .collect::<Result<Vec<u32>, String>>()?;
+        let corners = strip.iter().map(|v| index(*v)).collect::<Result<Vec<u32>, String>>()?;
         polygon::unroll_strip(&corners, &mut mesh.triangles);
     }
     Ok(())
@@ -287,10 +229,7 @@ fn push_strip(items: &[f64], mesh: &mut Mesh) -> Result<(), String> {
 fn check_indices(mesh: &Mesh) -> Result<(), String> {
     let outside = |i: &&u32| **i as usize >= mesh.positions.len();
     match mesh.triangles.iter().flatten().find(outside) {
-        Some(i) => Err(format!(
-            "a face refers to vertex {i} of {}",
-            mesh.positions.len()
-        )),
+        Some(i) => Err(format!("a face refers to vertex {i} of {}", mesh.positions.len())),
         None => Ok(()),
     }
 }

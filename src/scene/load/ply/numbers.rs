@@ -30,12 +30,7 @@ pub(super) struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     pub fn new(bytes: &'a [u8], header: &Header) -> Self {
-        Self {
-            bytes,
-            encoding: header.encoding,
-            at: header.end,
-            line: header.lines,
-        }
+        Self { bytes, encoding: header.encoding, at: header.end, line: header.lines }
     }
 
     pub fn remaining(&self) -> usize {
@@ -70,19 +65,11 @@ impl<'a> Reader<'a> {
             if rest.is_empty() {
                 return Err("the file ends".to_owned());
             }
-            let length = rest
-                .iter()
-                .position(|b| *b == b'\n' || *b == b'\r')
-                .unwrap_or(rest.len());
-            let end = if rest[length..].starts_with(b"\r\n") {
-                length + 2
-            } else {
-                length + 1
-            };
+            let length = rest.iter().position(|b| *b == b'\n' || *b == b'\r').unwrap_or(rest.len());
+            let end = if rest[length..].starts_with(b"\r\n") { length + 2 } else { length + 1 };
             self.at += end.min(rest.len());
             self.line += 1;
-            let line = std::str::from_utf8(&rest[..length])
-                .map_err(|_| "the line is not text".to_owned())?;
+            let line = std::str::from_utf8(&rest[..length]).map_err(|_| "the line is not text".to_owned())?;
             if !line.trim_ascii().is_empty() {
                 break line.split_ascii_whitespace();
             }
@@ -105,10 +92,7 @@ impl<'a> Reader<'a> {
             }
         }
         match words.next() {
-            Some(word) => Err(format!(
-                "`{}` follows the last property",
-                word.escape_debug()
-            )),
+            Some(word) => Err(format!("`{}` follows the last property", word.escape_debug())),
             None => Ok(()),
         }
     }
@@ -123,9 +107,7 @@ impl<'a> Reader<'a> {
             };
             let length = list_length(self.take(length)?, &property.name)?;
             if length.saturating_mul(property.item.size()) > self.remaining() {
-                return Err(format!(
-                    "a list of {length} items runs over the end of the file"
-                ));
+                return Err(format!("a list of {length} items runs over the end of the file"));
             }
             values.scalars.push(length as f64);
             for _ in 0..length {
@@ -176,9 +158,5 @@ fn parse(word: &str, scalar: Scalar) -> Result<f64, String> {
         _ => word.parse::<f64>().map_err(|_| wrong())?,
     };
     let whole = scalar.is_float() || value == libm::trunc(value);
-    if whole {
-        Ok(value)
-    } else {
-        Err(format!("`{word}` is not an integer"))
-    }
+    if whole { Ok(value) } else { Err(format!("`{word}` is not an integer")) }
 }
