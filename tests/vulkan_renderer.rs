@@ -179,7 +179,7 @@ fn both_ways_of_fetching_give_the_cpu_backends_film() {
 }
 
 #[test]
-fn neither_chunks_nor_jobs_change_the_film() {
+fn neither_chunks_nor_batches_nor_jobs_change_the_film() {
     let (scene, data) = baked(SCENE, true);
     let part = |x, y, width, height| Job { crop: Rect { x, y, width, height }, samples: 0..3 };
     let quarters = [part(0, 0, 20, 11), part(20, 0, 17, 11), part(0, 11, 20, 12), part(20, 11, 17, 12)];
@@ -199,11 +199,14 @@ fn the_local_integrator_gives_the_cpu_backends_film() {
 }
 
 #[test]
-fn an_empty_scene_is_its_background() {
+fn an_empty_scene_is_its_background_also_in_bands() {
     let (scene, mut data) = baked(SCENE, true);
     (data.nodes, data.triangles, data.instances, data.top_instances) = Default::default();
     (data.header.top_root, data.header.instance_count) = (INVALID, 0);
     compare(&data, &scene, VulkanOptions::default(), &[whole(0..2)]);
+    // A film cut into bands of four rows or fewer.
+    let page_limit = Some(1 << 13);
+    compare(&data, &scene, VulkanOptions { page_limit, ..VulkanOptions::default() }, &[whole(0..2)]);
 }
 
 #[test]

@@ -25,7 +25,8 @@ pub struct QueuePlan {
 }
 
 impl QueuePlan {
-    /// The largest queues of at most `most` slots that the device can hold. `chunk` lowers the rays of a chunk.
+    /// The largest queues of at most `most` slots that the device can hold. `chunk` lowers the rays of a chunk, and the
+    /// slots of a batch to four times that.
     pub fn new(
         info: &DeviceInfo,
         fetch: Fetch,
@@ -34,6 +35,7 @@ impl QueuePlan {
         chunk: Option<u32>,
     ) -> Result<QueuePlan, VulkanError> {
         let target = if info.kind == DeviceKind::Cpu { BATCH_CPU } else { BATCH_GPU };
+        let most = most.min(u64::from(chunk.unwrap_or(u32::MAX)) * 4);
         let mut batch = u64::from(target).min(most.next_power_of_two()) as u32;
         loop {
             let plan = Self::of_batch(batch, header, chunk);
@@ -54,7 +56,7 @@ impl QueuePlan {
         QueuePlan { batch, chunk, levels, shadows: chunk.saturating_mul(lights) }
     }
 
-    /// Entries of levels from 1 on: deepest first, so one chunk's two branches a ray are the most that ever wait.
+    /// Entries of levels from 1 on: room for two branches of each ray of a full chunk.
     pub fn level_capacity(&self) -> u32 {
         self.chunk * 2
     }
@@ -90,10 +92,11 @@ fn binding_limit(info: &DeviceInfo, fetch: Fetch) -> u64 {
     limits.storage_range.min(limits.allocation).min(texel)
 }
 
-/// Cuts `crop` into bands of whole rows whose film (and auxiliary values) one buffer of the device holds.
-pub fn bands(info: &DeviceInfo, crop: Rect, aovs: bool) -> Vec<Rect> {
+/// Cuts `crop` into bands of whole rows whose film (and auxiliary values) one buffer of the device holds. `most` lowers the
+/// bytes of that buffer.
+pub fn bands(info: &DeviceInfo, crop: Rect, aovs: bool, most: Option<u64>) -> Vec<Rect> {
     let limits = info.limits;
-    let bytes = limits.storage_range.min(limits.allocation).min(limits.heap / 8);
+    let bytes = limits.storage_range.min(limits.allocation).min(limits.heap / 8).min(most.unwrap_or(u64::MAX));
     let pixel = if aovs { size_of::<AovPixel>() } else { size_of::<FilmSum>() } as u64;
     bands_of(crop, bytes / pixel)
 }

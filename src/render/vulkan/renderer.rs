@@ -23,9 +23,9 @@ pub struct VulkanOptions {
     /// Index, part of the name, or kind; `None` for the best there is (`DeviceChoice`).
     pub device: Option<String>,
     pub fetch: FetchChoice,
-    /// Rays of a chunk at most. Pictures do not depend on it.
+    /// Rays of a chunk at most, and a quarter of the samples of a batch. Pictures do not depend on it.
     pub chunk: Option<u32>,
-    /// Bytes of a page of the scene at most. Pictures do not depend on it.
+    /// Bytes of a page of the scene, and of the film, at most. Pictures do not depend on it.
     pub page_limit: Option<u64>,
     /// Ask for the validation layers, as `GONIO_VALIDATION=1` does.
     pub validate: bool,
@@ -38,6 +38,7 @@ pub struct VulkanRenderer {
     scene: SceneBuffers,
     kernels: Kernels,
     chunk: Option<u32>,
+    page_limit: Option<u64>,
     /// Made for the first job, and again for a larger one.
     queues: Option<Queues>,
     pace: Pace,
@@ -84,8 +85,9 @@ impl VulkanRenderer {
         let mut context = Context::new(&choice, options.validate)?;
         let scene = SceneBuffers::upload(&mut context, data, options.fetch, options.page_limit)?;
         let kernels = Kernels::new(&context, &scene, data.stack_depth)?;
-        let chunk = options.chunk;
-        Ok(VulkanRenderer { context, header: data.header, scene, kernels, chunk, queues: None, pace: Pace::new(1) })
+        let VulkanOptions { chunk, page_limit, .. } = options;
+        let (header, pace) = (data.header, Pace::new(1));
+        Ok(VulkanRenderer { context, header, scene, kernels, chunk, page_limit, queues: None, pace })
     }
 
     /// How kernels read the scene.
@@ -231,7 +233,7 @@ impl Renderer for VulkanRenderer {
     }
 
     fn accumulate(&mut self, job: &Job, film: &mut Film, watch: &Watch) -> Result<Counters, RenderError> {
-        let bands = plan::bands(self.context.info(), job.crop, self.header.aovs != 0);
+        let bands = plan::bands(self.context.info(), job.crop, self.header.aovs != 0, self.page_limit);
         let pixels = bands.iter().map(|band| band.area() as u64).max().unwrap_or(0);
         let samples = u64::from(job.samples.end.saturating_sub(job.samples.start));
         self.ready(pixels * samples, pixels)?;
