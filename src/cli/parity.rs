@@ -62,12 +62,12 @@ impl FromStr for Contender {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let mut parts = text.split(':');
-        let mut flags = BackendFlags::default();
-        flags.backend = match parts.next() {
+        let backend = match parts.next() {
             Some("cpu") => BackendName::Cpu,
             Some("vulkan") => BackendName::Vulkan,
             _ => return Err("expected cpu, vulkan, vulkan:DEVICE or vulkan:DEVICE:FETCH".to_owned()),
         };
+        let mut flags = BackendFlags { backend, ..BackendFlags::default() };
         if flags.backend == BackendName::Vulkan {
             flags.device = parts.next().filter(|name| !name.is_empty()).map(str::to_owned);
             flags.fetch = match parts.next() {
