@@ -31,21 +31,21 @@ layout(set = 0, binding = 3, scalar) readonly buffer DataPage { uvec4 words[]; }
 #define GONIO_READ(buffers, page, at) buffers[page].words[at]
 #endif
 
-// A set's page is chosen by a switch over constants: descriptor arrays may not be indexed by data everywhere.
+// A set's page is chosen by comparing with constants: descriptor arrays may not be indexed by data everywhere. Pages that
+// the scene does not have are cut away by the specialisation: each fetch is inlined, so every page costs compile time.
 #define GONIO_FETCH_PAGED(name, buffers, PAGES)                                \
     uvec4 name(uint at) {                                                      \
         if (PAGES == 1u) return GONIO_READ(buffers, 0, at);                    \
+        uint page = at >> PAGE_SHIFT;                                          \
         uint within = at & ((1u << PAGE_SHIFT) - 1u);                          \
-        switch (at >> PAGE_SHIFT) {                                            \
-        case 0u: return GONIO_READ(buffers, 0, within);                        \
-        case 1u: return GONIO_READ(buffers, 1, within);                        \
-        case 2u: return GONIO_READ(buffers, 2, within);                        \
-        case 3u: return GONIO_READ(buffers, 3, within);                        \
-        case 4u: return GONIO_READ(buffers, 4, within);                        \
-        case 5u: return GONIO_READ(buffers, 5, within);                        \
-        case 6u: return GONIO_READ(buffers, 6, within);                        \
-        default: return GONIO_READ(buffers, 7, within);                        \
-        }                                                                      \
+        if (PAGES > 7u && page == 7u) return GONIO_READ(buffers, 7, within);   \
+        if (PAGES > 6u && page == 6u) return GONIO_READ(buffers, 6, within);   \
+        if (PAGES > 5u && page == 5u) return GONIO_READ(buffers, 5, within);   \
+        if (PAGES > 4u && page == 4u) return GONIO_READ(buffers, 4, within);   \
+        if (PAGES > 3u && page == 3u) return GONIO_READ(buffers, 3, within);   \
+        if (PAGES > 2u && page == 2u) return GONIO_READ(buffers, 2, within);   \
+        if (PAGES > 1u && page == 1u) return GONIO_READ(buffers, 1, within);   \
+        return GONIO_READ(buffers, 0, within);                                 \
     }
 
 GONIO_FETCH_PAGED(fetch_node, node_pages, NODE_PAGES)

@@ -1,4 +1,5 @@
 //! The device that tests run on, with the validation layers listening.
+#![allow(dead_code, reason = "each test binary uses its own part")]
 
 use gonio::render::vulkan::{Context, DeviceChoice, Messages, VulkanError};
 use std::ops::{Deref, DerefMut};
