@@ -159,6 +159,14 @@ impl From<FetchName> for FetchChoice {
     }
 }
 
+/// Parses `--threads`. A million threads would take the machine's memory.
+pub fn thread_count(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count @ 1..=1024) => Ok(count),
+        _ => Err("expected a number from 1 to 1024".to_owned()),
+    }
+}
+
 /// What to compute on.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Device")]
@@ -174,7 +182,7 @@ pub struct BackendFlags {
     #[arg(long, default_value = "auto")]
     pub fetch: FetchName,
     /// Threads of the CPU backend; as many as cores if not given.
-    #[arg(short, long, value_name = "N")]
+    #[arg(short, long, value_name = "N", value_parser = thread_count)]
     pub threads: Option<usize>,
 }
 
