@@ -10,6 +10,11 @@ use std::io::{self, Write as _};
 use std::process::{Command, ExitCode, Output, Stdio};
 
 #[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  gonio devices                                           a table; the index or name goes after --device
+  gonio devices --json                                    everything that is known
+  VK_DRIVER_FILES=/path/to/icd.json gonio devices         of one driver only")]
 pub struct DevicesArgs {
     /// Print everything that is known as JSON.
     #[arg(long)]

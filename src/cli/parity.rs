@@ -1,6 +1,6 @@
 //! `gonio parity`: the same samples on two backends, bit for bit.
 
-use super::setup::{BackendFlags, BackendName, FetchName, SceneFlags, bake_scene, film_of};
+use super::setup::{BackendFlags, BackendName, FetchName, SceneFlags, bake_scene, film_of, thread_count};
 use super::{EXIT_DIFFERS, Usage, render};
 use crate::bake::SceneData;
 use crate::film::{Film, Rect};
@@ -46,8 +46,8 @@ pub struct ParityArgs {
     #[arg(long, default_value = "auto")]
     fetch: FetchName,
     /// Threads of the CPU backend.
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(short, long, value_name = "N", value_parser = thread_count)]
+    threads: Option<usize>,
 }
 
 /// One side of a comparison.

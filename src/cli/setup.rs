@@ -163,6 +163,14 @@ impl From<FetchName> for FetchChoice {
     }
 }
 
+/// Parses `--threads`. A million threads would take the machine's memory.
+pub fn thread_count(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count @ 1..=1024) => Ok(count),
+        _ => Err("expected a number from 1 to 1024".to_owned()),
+    }
+}
+
 /// What to compute on.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Device")]
@@ -178,8 +186,8 @@ pub struct BackendFlags {
     #[arg(long, default_value = "auto")]
     pub fetch: FetchName,
     /// Threads of the CPU backend; as many as cores if not given.
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    #[arg(short, long, value_name = "N", value_parser = thread_count)]
+    pub threads: Option<usize>,
 }
 
 impl BackendFlags {
@@ -187,14 +195,14 @@ impl BackendFlags {
     pub fn renderer<'a>(&self, data: &'a SceneData) -> Result<Box<dyn Renderer + 'a>, RenderError> {
         let vulkan = || VulkanRenderer::new(data, self.vulkan_options());
         match self.backend {
-            BackendName::Cpu => Ok(Box::new(CpuRenderer::new(data, self.threads.map(usize::from))?)),
+            BackendName::Cpu => Ok(Box::new(CpuRenderer::new(data, self.threads)?)),
             BackendName::Vulkan => Ok(Box::new(vulkan()?)),
             BackendName::Auto if self.device.is_some() => Ok(Box::new(vulkan()?)),
             BackendName::Auto => match vulkan() {
                 Ok(renderer) => Ok(Box::new(renderer)),
                 Err(RenderError::NoDevice(reason)) => {
                     log::warn!("{reason}: using the CPU backend");
-                    Ok(Box::new(CpuRenderer::new(data, self.threads.map(usize::from))?))
+                    Ok(Box::new(CpuRenderer::new(data, self.threads)?))
                 }
                 Err(error) => Err(error),
             },
