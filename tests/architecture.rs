@@ -314,7 +314,7 @@ const THROUGH: [(&str, &str); 20] = [
     ("refraction_root", "fresnel_dielectric"),
     ("no_direction", "sample_material"),
     ("on_upper_side", "eval_lambert"),
-    ("reflect_local", "sample_material"),
+    ("reflect_local", "refract_local"),
     ("specular_probability", "sample_phong"),
     ("approx_intersect_node", "approximate: may differ, and tests/trace.rs proves it loses nothing"),
 ];
