@@ -2,6 +2,7 @@
 
 pub mod compare;
 pub mod devices;
+mod exact;
 mod interrupt;
 pub mod merge;
 mod output;

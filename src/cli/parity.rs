@@ -48,6 +48,9 @@ pub struct ParityArgs {
     /// Threads of the CPU backend.
     #[arg(short, long, value_name = "N", value_parser = thread_count)]
     threads: Option<usize>,
+    /// Fail on a Vulkan device that the strictness probe finds inexact, before any scene is compared on it.
+    #[arg(long)]
+    require_exact: bool,
 }
 
 /// One side of a comparison.
@@ -144,6 +147,7 @@ impl ParityArgs {
     fn contenders(&self) -> Vec<Contender> {
         let complete = |mut contender: Contender| {
             contender.flags.threads = self.threads;
+            contender.flags.require_exact = self.require_exact;
             if contender.flags.device.is_none() {
                 contender.flags.device = self.device.clone();
             }
