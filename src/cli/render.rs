@@ -43,7 +43,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "X,Y", conflicts_with_all = ["output", "time"])]
     pixel: Option<Pixel>,
     /// Stop at the end of the pass during which this time runs out.
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = parse_seconds)]
     time: Option<Duration>,
     /// Further layers of an EXR, separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
@@ -165,7 +165,8 @@ fn render_passes(
     let bar = progress::bar(pixels * u64::from(samples.end - samples.start), show_progress);
     let abort = AtomicBool::new(false);
     let watch = Watch { abort: &abort, advance: &|done| bar.inc(done) };
-    let mut outcome = Outcome { counters: Counters::default(), render_time: Duration::ZERO, passes: 0, interrupted: None };
+    let mut outcome =
+        Outcome { counters: Counters::default(), render_time: Duration::ZERO, passes: 0, interrupted: None };
     let mut next = samples.start;
     let mut pass_samples = 1;
     while next < samples.end {
@@ -180,7 +181,8 @@ fn render_passes(
         }
         // Passes of about half a second: long enough to fill a device, short enough to stop at; shorter if time runs out.
         let left = time.map_or(0.5, |limit| limit.saturating_sub(start.elapsed()).as_secs_f64().min(0.5));
-        pass_samples = (f64::from(end - next) * left / pass_time.as_secs_f64().max(1e-4)).clamp(1.0, f64::from(4 * (end - next))) as u32;
+        pass_samples = (f64::from(end - next) * left / pass_time.as_secs_f64().max(1e-4))
+            .clamp(1.0, f64::from(4 * (end - next))) as u32;
         next = end;
     }
     bar.finish_and_clear();
@@ -262,5 +264,9 @@ pub(super) fn print_bounce(out: &mut impl Write, bounce: &Bounce) -> std::io::Re
     if hit.instance == crate::layout::INVALID {
         return writeln!(out, "  leaves the scene");
     }
-    writeln!(out, "  hit        t {:?}, instance {}, primitive {}, b {:?} {:?}", hit.t, hit.instance, hit.primitive, hit.b1, hit.b2)
+    writeln!(
+        out,
+        "  hit        t {:?}, instance {}, primitive {}, b {:?} {:?}",
+        hit.t, hit.instance, hit.primitive, hit.b1, hit.b2
+    )
 }

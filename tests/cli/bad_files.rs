@@ -20,11 +20,26 @@ fn broken_gltf_is_refused_with_the_place_in_the_document() {
         (r#""version": "2.0""#, r#""version": "3.0""#, "bad.gltf: asset: ", "version 3.0"),
         (r#"{"mesh": 0}"#, r#"{"mesh": 1}"#, "bad.gltf: nodes[0]: ", "mesh 1"),
         (r#"{"mesh": 0}"#, r#"{"children": [0]}"#, "bad.gltf: nodes[0]: ", "cycle"),
-        (r#""count": 3, "type": "VEC3""#, r#""count": 4000000000, "type": "VEC3""#, "bad.gltf: accessors[0]: ", "4000000000"),
-        (r#""bufferView": 0, "componentType": 5126, "count": 3"#, r#""componentType": 5126, "count": 4000000000"#, "bad.gltf: accessors[0]: ", ""),
+        (
+            r#""count": 3, "type": "VEC3""#,
+            r#""count": 4000000000, "type": "VEC3""#,
+            "bad.gltf: accessors[0]: ",
+            "4000000000",
+        ),
+        (
+            r#""bufferView": 0, "componentType": 5126, "count": 3"#,
+            r#""componentType": 5126, "count": 4000000000"#,
+            "bad.gltf: accessors[0]: ",
+            "",
+        ),
         (r#""byteLength": 42"#, r#""byteLength": 99999999999"#, "bad.gltf: buffers[0]: ", "99999999999"),
         ("\"meshes\"", "\"meshes\" oops", "bad.gltf:2:", ""),
-        (r#""scene": 0,"#, r#""scene": 0, "extensionsRequired": ["XYZ_magic"],"#, "bad.gltf: extensionsRequired: ", "XYZ_magic"),
+        (
+            r#""scene": 0,"#,
+            r#""scene": 0, "extensionsRequired": ["XYZ_magic"],"#,
+            "bad.gltf: extensionsRequired: ",
+            "XYZ_magic",
+        ),
     ];
     for (from, to, place, what) in cases {
         let text = GLTF.replacen(from, to, 1);
@@ -64,7 +79,9 @@ fn broken_texture_is_refused_by_name() {
     folder.cpu(&["render", "textured.toml", "-o", "a.png", "--spp", "1"]);
     // A header that claims 60,000 x 60,000 texels.
     let huge = [&good[..16], &60_000u32.to_be_bytes(), &60_000u32.to_be_bytes(), &good[24..]].concat();
-    for bytes in [Vec::new(), b"hello".to_vec(), good[..8].to_vec(), good[..40].to_vec(), good[..good.len() / 2].to_vec(), huge] {
+    for bytes in
+        [Vec::new(), b"hello".to_vec(), good[..8].to_vec(), good[..40].to_vec(), good[..good.len() / 2].to_vec(), huge]
+    {
         folder.file("t.png", bytes);
         let args = ["render", "textured.toml", "-o", "b.png", "--backend", "cpu"];
         refused(&folder, &args, 65, "", "t.png");

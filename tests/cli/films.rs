@@ -16,8 +16,7 @@ fn films_with_samples_in_common_are_refused_with_both_ranges() {
     folder.cpu(&["render", "scene.toml", "-o", "c.gfilm", "--samples", "1..3"]);
     folder.file("old.png", "precious");
     let message = folder.fails(65, &["merge", "a.gfilm", "c.gfilm", "-o", "old.png"]);
-    let expected =
-        "error: c.gfilm: cannot be merged: both films hold the samples 1..2 (they hold 0..2 and 1..3)\n";
+    let expected = "error: c.gfilm: cannot be merged: both films hold the samples 1..2 (they hold 0..2 and 1..3)\n";
     assert_eq!(message, expected);
     assert_eq!(folder.bytes("old.png"), b"precious");
     folder.fails(65, &["merge", "a.gfilm", "a.gfilm", "-o", "old.png"]);
@@ -29,7 +28,7 @@ fn films_of_different_pictures_are_refused_with_what_differs() {
     let cases: [(&[&str], &str); 4] = [
         (&["--set", "material.red.color=[0,0,1]"], "scene"),
         (&["--seed", "5"], "seed"),
-        (&["--size", "33x24"], "size"),
+        (&["--size", "33x24"], "frame"),
         (&["--crop", "0,0,8,8"], "crop"),
     ];
     for (change, what) in cases {
@@ -86,7 +85,10 @@ fn different_pictures_exit_with_1_and_within_limits_with_0() {
     let ended = folder.run(&["compare", "a.gfilm", "b.gfilm"]);
     assert_eq!(ended.code, Some(1), "{}", ended.stderr);
     let text = ended.text();
-    assert!(text.contains("film hash  different") && text.contains("\nrejected: ") && text.contains("pixels differ"), "{text}");
+    assert!(
+        text.contains("film hash  different") && text.contains("\nrejected: ") && text.contains("pixels differ"),
+        "{text}"
+    );
     folder.done(&["compare", "a.gfilm", "b.gfilm", "--max-mse", "100", "--max-flip", "1"]);
     let ended = folder.run(&["compare", "a.gfilm", "b.gfilm", "--max-flip", "1", "--max-ulp", "1"]);
     assert_eq!(ended.code, Some(1));

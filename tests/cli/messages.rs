@@ -109,17 +109,22 @@ fn full_disk_is_reported() {
         &["completions", "bash"],
     ] {
         let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("/dev/full");
-        let child = Command::new(program()).args(args).current_dir(folder.path("")).stdout(full).output().expect("started");
+        let child =
+            Command::new(program()).args(args).current_dir(folder.path("")).stdout(full).output().expect("started");
         let stderr = String::from_utf8_lossy(&child.stderr);
         assert_eq!(child.status.code(), Some(74), "{args:?}: {stderr}");
-        assert!(stderr.starts_with("error: ") && stderr.lines().count() <= 3 && stderr.contains("No space left"), "{args:?}: {stderr}");
+        assert!(
+            stderr.starts_with("error: ") && stderr.lines().count() <= 3 && stderr.contains("No space left"),
+            "{args:?}: {stderr}"
+        );
     }
 }
 
 #[test]
 fn without_a_vulkan_driver_auto_says_so_in_one_line_and_uses_the_cpu() {
     let folder = Folder::new();
-    for (variable, value) in [("VK_DRIVER_FILES", "/nonexistent"), ("GONIO_VULKAN_LOADER", "/nonexistent/libvulkan.so")] {
+    for (variable, value) in [("VK_DRIVER_FILES", "/nonexistent"), ("GONIO_VULKAN_LOADER", "/nonexistent/libvulkan.so")]
+    {
         let without = |args: &[&str]| ended(folder.command(args).env(variable, value));
         let auto = without(&["render", "scene.toml", "-o", "auto.png"]);
         assert_eq!(auto.code, Some(0), "{}", auto.stderr);
@@ -139,7 +144,8 @@ fn devices_lists_the_cpu_whatever_the_drivers_are() {
     folder.file("broken.json", "{ \"ICD\": ");
     folder.file("absent.json", "{\"file_format_version\": \"1.0.0\", \"ICD\": {\"library_path\": \"/nonexistent.so\", \"api_version\": \"1.2.0\"}}");
     let manifest = |name: &str| folder.path(name).display().to_string();
-    for drivers in [None, Some("/nonexistent".to_owned()), Some(manifest("broken.json")), Some(manifest("absent.json"))] {
+    for drivers in [None, Some("/nonexistent".to_owned()), Some(manifest("broken.json")), Some(manifest("absent.json"))]
+    {
         let mut command = folder.command(&["devices"]);
         if let Some(drivers) = &drivers {
             command.env("VK_DRIVER_FILES", drivers);
@@ -200,7 +206,8 @@ fn help_of_every_subcommand_has_examples_that_begin_with_the_programs_name() {
     let folder = Folder::new();
     for name in ["render", "merge", "parity", "compare", "devices", "completions"] {
         let help = folder.done(&[name, "--help"]);
-        let (_, examples) = help.split_once("Examples:\n").unwrap_or_else(|| panic!("no examples in the help of {name}"));
+        let (_, examples) =
+            help.split_once("Examples:\n").unwrap_or_else(|| panic!("no examples in the help of {name}"));
         assert!(examples.contains(&format!("  gonio {name} ")), "{name}: {examples}");
         assert!(help.contains(&format!("Usage: gonio {name}")));
     }

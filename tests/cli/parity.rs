@@ -86,7 +86,9 @@ fn expect_file_that_is_missing_or_no_record_is_refused() {
     let folder = Folder::new();
     let args = ["parity", "scene.toml", "--between", "cpu,cpu", "--expect", "expect.json"];
     assert!(folder.fails(74, &args).starts_with("error: cannot read expect.json: "));
-    for bad in ["", "{", "[]", "{\"scenes\": 3}", "{\"scenes\": [{}]}", "{\"scenes\": [{\"scene\": \"a\", \"width\": -1}]}"] {
+    for bad in
+        ["", "{", "[]", "{\"scenes\": 3}", "{\"scenes\": [{}]}", "{\"scenes\": [{\"scene\": \"a\", \"width\": -1}]}"]
+    {
         folder.file("expect.json", bad);
         let message = folder.fails(65, &args);
         assert!(message.starts_with("error: expect.json: ") && message.lines().count() == 1, "{message}");

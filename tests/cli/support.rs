@@ -6,12 +6,13 @@ use gonio::film::{Film, Rect};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// A red ball before a grey background, 32x24, two samples a pixel.
+/// A red ball before a grey background, 32x24, two samples a pixel: too few for a filter with negative lobes.
 pub const SCENE: &str = r#"
 [render]
 samples = 2
 [film]
 size = [32, 24]
+filter = "box"
 [camera]
 eye = [0, 1, 5]
 target = [0, 0.5, 0]
@@ -82,7 +83,8 @@ impl Folder {
     /// The names of all files, sorted: what is left over shows here.
     pub fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.folder.path()).expect("readable");
-        let mut names: Vec<String> = entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
         names.sort();
         names
     }
