@@ -301,8 +301,11 @@ fn check_expected(result: &SceneResult, expected: &Expected, quiet: bool) -> std
         Some(hash) => (format!("{key}: hash {} differs from the recorded {hash}", result.film_hash), false),
         None => (format!("{key}: no hash recorded"), false),
     };
-    if !quiet {
-        writeln!(std::io::stdout(), "{line}")?;
+    match quiet {
+        // Standard output is the JSON's.
+        true if !same => log::warn!("{line}"),
+        true => {}
+        false => writeln!(std::io::stdout(), "{line}")?,
     }
     Ok(same)
 }

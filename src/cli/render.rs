@@ -43,7 +43,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "X,Y", conflicts_with_all = ["output", "time"])]
     pixel: Option<Pixel>,
     /// Stop at the end of the pass during which this time runs out.
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = parse_seconds)]
     time: Option<Duration>,
     /// Further layers of an EXR, separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]

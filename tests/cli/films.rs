@@ -28,7 +28,7 @@ fn films_of_different_pictures_are_refused_with_what_differs() {
     let cases: [(&[&str], &str); 4] = [
         (&["--set", "material.red.color=[0,0,1]"], "scene"),
         (&["--seed", "5"], "seed"),
-        (&["--size", "33x24"], "size"),
+        (&["--size", "33x24"], "frame"),
         (&["--crop", "0,0,8,8"], "crop"),
     ];
     for (change, what) in cases {

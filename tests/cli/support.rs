@@ -6,12 +6,13 @@ use gonio::film::{Film, Rect};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// A red ball before a grey background, 32x24, two samples a pixel.
+/// A red ball before a grey background, 32x24, two samples a pixel: too few for a filter with negative lobes.
 pub const SCENE: &str = r#"
 [render]
 samples = 2
 [film]
 size = [32, 24]
+filter = "box"
 [camera]
 eye = [0, 1, 5]
 target = [0, 0.5, 0]
