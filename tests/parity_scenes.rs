@@ -111,7 +111,7 @@ fn chunks_and_pages_do_not_change_a_bit() {
     let (scene, data) = first_light(take);
     let reference = render_cpu(&scene, &data);
     for fetch in [FetchChoice::Texel, FetchChoice::Storage] {
-        for (chunk, page_limit) in [(Some(100), None), (Some(1537), None), (None, Some(1 << 19))] {
+        for (chunk, page_limit) in [(Some(100), None), (Some(1537), None), (None, Some(1 << 20))] {
             let options = VulkanOptions { fetch, chunk, page_limit, ..VulkanOptions::default() };
             let Some(mut renderer) = vulkan(&data, options) else { return };
             let film = render(&mut *renderer, &scene, &data, 0..take.samples);

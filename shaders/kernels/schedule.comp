@@ -1,8 +1,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// One invocation: takes the next chunk from the deepest level that has rays, and hands last round's shadow rays over.
-// Deepest first keeps every level below twice a chunk, so memory is bounded (ARCHITECTURE.md, "The wavefront").
+// One invocation: takes the largest chunk that any level can give, and hands last round's shadow rays over.
+// A level gives no more rays than the next has room for two branches of each, so no queue overflows; below the deepest
+// level that has rays all is empty, so there is always a chunk (ARCHITECTURE.md, "The wavefront").
 #include "kernels/bindings.glsl"
 
 uint groups(uint count) {
@@ -14,16 +15,18 @@ void main() {
     control.shadow_pending = min(control.shadow_count, control.shadow_capacity);
     control.shadow_count = 0u;
     control.chunk_count = 0u;
+    uint room = control.chunk_limit; // rays of the last level have no branches
     for (uint level = header.max_depth + 1u; level-- > 0u;) {
         uint waiting = control.level_count[level];
-        if (waiting != 0u) {
+        uint count = min(min(waiting, control.chunk_limit), room);
+        if (count > control.chunk_count) {
             control.chunk_level = level;
-            control.chunk_count = min(waiting, control.chunk_limit);
-            control.chunk_first = waiting - control.chunk_count;
-            control.level_count[level] = control.chunk_first;
-            break;
+            control.chunk_count = count;
         }
+        room = (control.level_capacity - waiting) >> 1u;
     }
+    control.chunk_first = control.level_count[control.chunk_level] - control.chunk_count;
+    control.level_count[control.chunk_level] = control.chunk_first;
     control.extend = DispatchArguments(groups(control.chunk_count), 1u, 1u);
     control.shade = control.extend;
     control.shadow = DispatchArguments(groups(control.shadow_pending), 1u, 1u);

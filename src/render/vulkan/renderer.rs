@@ -249,6 +249,7 @@ impl Renderer for VulkanRenderer {
             self.run_band(band, job, &mut tally, watch)?;
             self.add_to_film(band, job, film)?;
         }
+        log::debug!("{} rays in {} rounds", tally.counters.closest_rays, tally.last.rounds);
         film.record(job.samples.clone(), tally.nan_count, tally.clamped_count);
         Ok(tally.counters)
     }
