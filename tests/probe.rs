@@ -171,7 +171,7 @@ shape = \"sphere\"
 material = \"grey\"
 
 [[light]]
-kind = \"point\"
+type = \"point\"
 position = [2, 3, 4]
 intensity = 20
 ";
