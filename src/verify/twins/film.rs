@@ -3,7 +3,9 @@
 use super::{Family, In, Twin};
 use crate::layout::FilmSum;
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, hash_u32, sample_1d, sample_2d, unit_float};
-use crate::shading::spectrum::{spectrum_flush, spectrum_from_rgb, spectrum_luminance, spectrum_max, spectrum_to_rgb, spectrum_zero};
+use crate::shading::spectrum::{
+    spectrum_flush, spectrum_from_rgb, spectrum_luminance, spectrum_max, spectrum_to_rgb, spectrum_zero,
+};
 use crate::transport::film::{Fixed, add_fixed, clamp_sample, dither_lane, to_fixed};
 use crate::verify::inputs::Domain::{self, Below, Bits, Exponent, Range};
 

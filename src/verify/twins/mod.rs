@@ -31,7 +31,8 @@ pub struct Family {
 }
 
 /// All of them.
-pub static FAMILIES: &[Family] = &[math::FAMILY, film::FAMILY, shading::FAMILY, models::FAMILY, warp::FAMILY, trace::FAMILY];
+pub static FAMILIES: &[Family] =
+    &[math::FAMILY, film::FAMILY, shading::FAMILY, models::FAMILY, warp::FAMILY, trace::FAMILY];
 
 /// The arguments of one evaluation, read as the harness in GLSL reads them.
 pub struct In<'a>(&'a [u32]);
