@@ -295,6 +295,87 @@ fn a_twin_that_differs_in_a_name_an_argument_or_a_word_is_seen() {
     assert_eq!(compare("/// One.\n/// 2.\nfn f(a: f32) -> f32 {\n    a\n}\n", glsl), 1);
 }
 
+/// Twins that no parity kernel calls by name: the function, and the one through which a kernel runs it.
+const THROUGH: [(&str, &str); 20] = [
+    ("eval_lambert", "eval_material"),
+    ("eval_phong", "eval_material"),
+    ("eval_blinn_phong", "eval_material"),
+    ("eval_cook_torrance", "eval_material"),
+    ("pdf_lambert", "pdf_material"),
+    ("pdf_phong", "pdf_material"),
+    ("pdf_blinn_phong", "pdf_material"),
+    ("pdf_cook_torrance", "pdf_material"),
+    ("sample_lambert", "sample_material"),
+    ("sample_phong", "sample_material"),
+    ("sample_blinn_phong", "sample_material"),
+    ("sample_cook_torrance", "sample_material"),
+    ("fresnel_cook_torrance", "eval_cook_torrance"),
+    ("beckmann_d_slope", "beckmann_d"),
+    ("refraction_root", "fresnel_dielectric"),
+    ("no_direction", "sample_material"),
+    ("on_upper_side", "eval_lambert"),
+    ("reflect_local", "refract_local"),
+    ("specular_probability", "sample_phong"),
+    ("approx_intersect_node", "approximate: may differ, and tests/trace.rs proves it loses nothing"),
+];
+
+/// The code of a GLSL file with `#ifdef GONIO_FETCH ... #endif` blanked: what needs no scene.
+fn without_scene(file: &Source) -> Source {
+    let mut depth = 0;
+    let lines = file.text.lines().map(|line| {
+        match line.split(' ').next() {
+            Some("#ifdef") if depth > 0 || line == "#ifdef GONIO_FETCH" => depth += 1,
+            Some("#ifndef" | "#if") if depth > 0 => depth += 1,
+            Some("#endif") if depth > 0 => depth -= 1,
+            _ if depth == 0 => return line,
+            _ => {}
+        }
+        ""
+    });
+    Source::new(file.path.clone(), lines.collect::<Vec<_>>().join("\n"))
+}
+
+#[test]
+fn every_public_twin_that_needs_no_scene_is_run_by_a_parity_kernel() {
+    let kernels = sources("shaders/kernels/parity", &["comp"]);
+    let named: BTreeSet<String> =
+        kernels.iter().flat_map(|file| tokens(&file.code)).map(|token| token.text.to_owned()).collect();
+    let mut calls = BTreeMap::new();
+    let mut public = BTreeSet::new();
+    for folder in ["shading", "trace"] {
+        let (rust, glsl) = pairs(folder);
+        for (stem, file) in &glsl {
+            let file = without_scene(file);
+            for function in file.functions() {
+                let is_public = |start: &str| rust[stem].code.contains(&format!("{start} {}(", function.name));
+                if is_public("pub fn") || is_public("pub const fn") {
+                    public.insert(function.name.clone());
+                }
+                let body: BTreeSet<_> = tokens(&file.code[function.body]).iter().map(|t| t.text.to_owned()).collect();
+                calls.insert(function.name, body);
+            }
+        }
+    }
+    assert!(public.len() > 80, "the functions are not found any more: {public:?}");
+    let through: BTreeMap<_, _> = THROUGH.into_iter().collect();
+    let is_run = |name: &str| named.contains(name) || through.contains_key(name);
+    let missing: Vec<_> = public.iter().filter(|name| !is_run(name)).collect();
+    assert!(missing.is_empty(), "no parity kernel runs {missing:?}");
+    for (name, caller) in THROUGH {
+        assert!(public.contains(name) && !named.contains(name), "`{name}` has no place in THROUGH");
+        if !name.starts_with("approx_") {
+            assert!(is_run(caller) && calls[caller].contains(name), "`{caller}` does not run `{name}`");
+        }
+    }
+}
+
+#[test]
+fn functions_that_read_the_scene_are_told_from_those_that_do_not() {
+    let text = "float a() { return 1.0; }\n#ifdef GONIO_FETCH\n#ifdef X\n#endif\nfloat b() { return 2.0; }\n#endif\nfloat c() { return 3.0; }\n";
+    let names = |file: Source| file.functions().into_iter().map(|function| function.name).collect::<Vec<_>>();
+    assert_eq!(names(without_scene(&Source::new("shaders/shading/a.glsl", text))), ["a", "c"]);
+}
+
 /// Places where a word stands in code.
 fn places_of(file: &Source, words: &BTreeSet<String>) -> Vec<String> {
     let tokens = tokens(&file.code);

@@ -1,15 +1,19 @@
 //! Host and device see the same bytes: every record and every constant of `src/layout` against the SPIR-V.
 //!
-//! Needs no device. `shaders/kernels/parity/layout.comp` declares each record in a scalar block, and every other kernel
-//! is held to the same layouts. Names, types, offsets, sizes, strides, bindings and constants are compared.
+//! `shaders/kernels/parity/layout.comp` declares each record in a scalar block, and every other kernel is held to the same
+//! layouts. Names, types, offsets, sizes, strides, bindings and constants are compared without a device; the last tests
+//! send the records through the kernel on a device, where there is one.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use gonio::render::vulkan::{BufferSpec, Context};
 use gonio::shaders::{self, Fetch};
 
 #[path = "../build/compile.rs"]
 mod compile;
+#[path = "common/device.rs"]
+mod device;
 #[path = "layout/records.rs"]
 mod records;
 #[path = "layout/reflect.rs"]
@@ -308,4 +312,48 @@ fn the_bindings_file_binds_all_that_is_promised() {
         let module = rspirv::dr::load_words(&words).expect("valid SPIR-V");
         assert_eq!(Reflection::of(&module).resources(), bindings(fetch), "{fetch:?}");
     }
+}
+
+/// The bytes before the records in the layout kernel's input: a header.
+const HEADER_BYTES: usize = 256;
+
+/// Runs the layout kernel on `count` records, or for its constants if `record` is the number of records.
+fn run_layout_kernel(context: &mut Context, record: usize, count: usize, input: &[u8], output: usize) -> Vec<u8> {
+    let words = shaders::kernel("parity/layout", Fetch::Storage).expect("the layout kernel");
+    let buffers = [BufferSpec::Input(input), BufferSpec::Output(output as u64)];
+    let choice = [record as u32, count as u32];
+    let outputs = context.run_kernel("parity/layout", words, &buffers, bytemuck::cast_slice(&choice), 1);
+    outputs.unwrap_or_else(|e| panic!("{e}")).swap_remove(0)
+}
+
+#[test]
+fn a_device_reads_and_writes_every_record_as_rust_does() {
+    let Some(mut context) = device::context() else { return };
+    let records = records();
+    let header = &records.iter().find(|r| r.name == "SceneHeader").expect("a listed record").members;
+    for (number, record) in records.iter().enumerate() {
+        let count = 5;
+        let words = count * record.size / 4;
+        // All words differ and none is a subnormal or a NaN, which a device may change.
+        let mut input: Vec<u32> = (0..(HEADER_BYTES / 4 + words) as u32).map(|i| 0x3f80_0000 + i).collect();
+        let own = format!("first_{}", record.snake_name());
+        for member in header.iter().filter(|member| member.name.starts_with("first_")) {
+            // Past the end of the buffer for all arrays but the one that is read.
+            input[member.offset / 4] = if member.name == own { (HEADER_BYTES / 16) as u32 } else { 0xff_ffff };
+        }
+        let returned = run_layout_kernel(&mut context, number, count, bytemuck::cast_slice(&input), 4 * words);
+        let expected: &[u8] = bytemuck::cast_slice(&input[HEADER_BYTES / 4..]);
+        assert!(returned == expected, "{}: {returned:x?}, not {expected:x?}", record.name);
+    }
+}
+
+#[test]
+fn a_device_knows_every_constant_as_rust_does() {
+    let Some(mut context) = device::context() else { return };
+    let names = stored_constants();
+    let input = [0; HEADER_BYTES];
+    let returned = run_layout_kernel(&mut context, records().len(), 1, &input, 4 * names.len());
+    let values: Vec<u32> = bytemuck::pod_collect_to_vec(&returned);
+    let named = names.into_iter().map(|(index, name)| (name, values[index as usize]));
+    assert_eq!(named.collect::<BTreeMap<_, _>>(), all_constants(), "the device (left) and Rust");
 }

@@ -135,7 +135,8 @@ fn samples_lie_in_the_unit_square() {
 fn each_sample_is_uniform_over_pixels_paths_dimensions_and_seeds() {
     for sampling in SAMPLERS {
         for index in [0, 1, 2, 3, 15, 16, 17, 1_000_003] {
-            let keys: [fn(SampleKey, u32) -> (SampleKey, u32); 4] = [
+            type Vary = fn(SampleKey, u32) -> (SampleKey, u32);
+            let keys: [Vary; 4] = [
                 |key, i| (SampleKey { pixel: i, ..key }, 0),
                 |key, i| (SampleKey { path_id: i, ..key }, 0),
                 |key, i| (key, i),
@@ -143,8 +144,8 @@ fn each_sample_is_uniform_over_pixels_paths_dimensions_and_seeds() {
             ];
             for (what, vary) in keys.iter().enumerate() {
                 let each = |i| vary(key(sampling, 5, index), i);
-                let flat = (0..16_384).map(|i| each(i)).map(|(key, dimension)| sample_2d(key, dimension).into());
-                let line = (0..16_384).map(|i| each(i)).map(|(key, dimension)| (sample_1d(key, dimension), 0.0));
+                let flat = (0..16_384).map(&each).map(|(key, dimension)| sample_2d(key, dimension).into());
+                let line = (0..16_384).map(&each).map(|(key, dimension)| (sample_1d(key, dimension), 0.0));
                 let (flat, line) = (grid(flat, 16), grid(line, 16));
                 assert!(deviation(&flat).abs() < 5.0, "sampler {sampling}, index {index}, variation {what}");
                 assert!(deviation(&line[..16]).abs() < 5.0, "sampler {sampling}, index {index}, variation {what}");

@@ -269,4 +269,9 @@ fn what_a_ray_leaves_and_what_lies_beyond_its_end_is_not_hit() {
     let inward = Ray { origin: Vec3::new(0.0, 0.0, -3.0), skip_instance: 1, skip_primitive: 0, ..down };
     assert_eq!(hit(&Ray { skip_inward: 1, ..inward }), (1, 2.0, true));
     assert_eq!(hit(&Ray { skip_inward: 0, ..inward }), (INVALID, T_INFINITE, false));
+    // Also where rounding has put the start on the wrong side: the near root ahead is the start itself, not a hit.
+    let outside = Ray { origin: Vec3::new(0.0, 0.0, -2.75), ..inward };
+    assert_eq!(hit(&Ray { skip_inward: 1, ..outside }), (1, 2.25, true));
+    let inside = Ray { origin: Vec3::new(0.0, 0.0, -3.25), direction: Vec3::Z, ..inward };
+    assert_eq!(hit(&Ray { skip_inward: 0, ..inside }), (0, 3.25, true));
 }

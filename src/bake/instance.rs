@@ -70,7 +70,7 @@ pub fn place(
     round: bool,
 ) -> Result<Placement, BakeError> {
     let mut scaled = transform.0;
-    scaled.matrix3 = scaled.matrix3 * unit;
+    scaled.matrix3 *= unit;
     let to_world = rows(&scaled);
     // The inverse of what was rounded, so that the two disagree by one rounding only.
     let world = from_rows(&to_world);

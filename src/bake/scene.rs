@@ -256,7 +256,8 @@ fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
             Sampler::Stratified => SAMPLER_STRATIFIED,
             Sampler::Independent => SAMPLER_INDEPENDENT,
         },
-        strata: strata(settings.samples),
+        // For the sampler that needs them only: otherwise films made with --spp and --samples would differ in their digest.
+        strata: if settings.sampler == Sampler::Stratified { strata(settings.samples) } else { 1 },
         shadows: u32::from(settings.shadows),
         film_scale: libm::ldexp(1.0, exponent) as f32,
         ..SceneHeader::default()

@@ -13,6 +13,12 @@ use std::process::ExitCode;
 ///
 /// Exit code 0 if they are equal or, where limits are given, within all of them; 1 if not.
 #[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  gonio compare golden.png new.png                        equal or not, and how far apart
+  gonio compare golden.exr new.exr --max-flip 0.05        close enough to the eye
+  gonio compare a.gfilm b.png --json                      any pair of formats; the measures as JSON
+  gonio compare golden.png new.png --heatmap where.png    a picture of the difference")]
 pub struct CompareArgs {
     /// The reference; `-` is standard input
     pub reference: PathBuf,

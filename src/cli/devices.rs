@@ -1,6 +1,9 @@
 //! `gonio devices`: what can be used, and why the rest cannot.
 
-use crate::render::vulkan::{DeviceInfo, Instance};
+use crate::render::RenderError;
+use crate::render::vulkan::{Context as Device, DeviceInfo, Instance};
+use crate::verify::probe::{Cache, Exactness, probe as probe_exactness};
+use crate::verify::twins::Mismatch;
 use anyhow::Context;
 use clap::Args;
 use serde::Deserialize;
@@ -8,8 +11,14 @@ use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::process::{Command, ExitCode, Output, Stdio};
+use std::sync::Arc;
 
 #[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  gonio devices                                           a table; the index or name goes after --device
+  gonio devices --json                                    everything that is known
+  VK_DRIVER_FILES=/path/to/icd.json gonio devices         of one driver only")]
 pub struct DevicesArgs {
     /// Print everything that is known as JSON.
     #[arg(long)]
@@ -42,15 +51,33 @@ pub fn run(args: &DevicesArgs) -> anyhow::Result<ExitCode> {
 
 /// Everything the drivers say, or why there is nothing.
 fn probe() -> Value {
-    match Instance::new(false).and_then(|instance| instance.devices()) {
-        Ok(devices) => json!({ "devices": devices.iter().map(describe).collect::<Vec<_>>(), "problem": null }),
+    let found = Instance::new(false).and_then(|instance| Ok((instance.devices()?, instance)));
+    match found {
+        Ok((devices, instance)) => {
+            let described: Vec<_> = devices.iter().map(|info| describe(&instance, info)).collect();
+            json!({ "devices": described, "problem": null })
+        }
         Err(error) => json!({ "devices": [], "problem": error.to_string() }),
     }
 }
 
-fn describe(info: &DeviceInfo) -> Value {
+/// What the driver says of a device, and whether it is exact: null with a reason where that cannot be told.
+fn describe(instance: &Arc<Instance>, info: &DeviceInfo) -> Value {
     let mut value = json!(info);
     value["usable"] = json!(info.is_usable());
+    let opened = || Device::on(instance.clone(), info.clone()).map_err(RenderError::from);
+    let probed = info.is_usable().then(|| opened().and_then(|mut device| probe_exactness(&mut device, &Cache::user())));
+    let (exact, inexact, problem) = match probed {
+        None => (None, None, None),
+        Some(Ok(probed)) => match probed.exactness {
+            Exactness::Exact => (Some(true), None, None),
+            Exactness::Inexact(mismatch) => (Some(false), Some(mismatch), None),
+        },
+        Some(Err(error)) => (None, None, Some(error.to_string())),
+    };
+    value["exact"] = json!(exact);
+    value["inexact"] = json!(inexact);
+    value["exact_problem"] = json!(problem);
     value
 }
 
@@ -100,11 +127,36 @@ struct Row {
     driver: String,
     driver_version: String,
     missing: Vec<String>,
+    exact: Option<bool>,
+    inexact: Option<Mismatch>,
+    exact_problem: Option<String>,
+}
+
+/// Arguments of an inexact operation that the table shows; the line below it has all of them.
+const SHOWN_ARGUMENTS: usize = 3;
+
+impl Row {
+    /// "yes", "no (operation, input)" or "-".
+    fn exactness(&self) -> String {
+        match (self.exact, &self.inexact) {
+            (Some(true), _) => "yes".to_owned(),
+            (Some(false), Some(mismatch)) => {
+                let arguments = mismatch.arguments.iter().take(SHOWN_ARGUMENTS);
+                let mut input: Vec<_> = arguments.map(|word| format!("{:?}", f32::from_bits(*word))).collect();
+                if mismatch.arguments.len() > SHOWN_ARGUMENTS {
+                    input.push("...".to_owned());
+                }
+                format!("no ({}, {})", mismatch.twin, input.join(" "))
+            }
+            (Some(false), None) => "no".to_owned(),
+            (None, _) => "-".to_owned(),
+        }
+    }
 }
 
 /// Devices by index, the CPU backend last, and below them the reasons.
 fn table(answer: &Answer, threads: usize) -> String {
-    let mut rows = vec![["DEVICE", "NAME", "KIND", "VULKAN", "DRIVER", "USABLE"].map(str::to_owned)];
+    let mut rows = vec![["DEVICE", "NAME", "KIND", "VULKAN", "DRIVER", "USABLE", "EXACT"].map(str::to_owned)];
     for row in &answer.devices {
         rows.push([
             row.index.to_string(),
@@ -113,25 +165,32 @@ fn table(answer: &Answer, threads: usize) -> String {
             row.vulkan_version.clone(),
             format!("{} {}", row.driver, row.driver_version).trim().to_owned(),
             if row.missing.is_empty() { "yes" } else { "no" }.to_owned(),
+            row.exactness(),
         ]);
     }
     let unit = if threads == 1 { "thread" } else { "threads" };
-    rows.push(["-", "", "cpu", "-", "-", "yes"].map(str::to_owned));
+    rows.push(["-", "", "cpu", "-", "-", "yes", "yes"].map(str::to_owned));
     if let Some(row) = rows.last_mut() {
         row[1] = format!("the CPU backend ({threads} {unit})");
     }
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths = [0, 1, 2, 3, 4].map(width);
+    let widths = [0, 1, 2, 3, 4, 5].map(width);
     let mut text = String::new();
     for row in &rows {
         for (cell, width) in row.iter().zip(widths) {
             let _ = write!(text, "{cell:width$}  ");
         }
-        let _ = writeln!(text, "{}", row[5]);
+        let _ = writeln!(text, "{}", row[6]);
     }
     for row in &answer.devices {
         for reason in &row.missing {
             let _ = writeln!(text, "device {} cannot be used: {reason}", row.index);
+        }
+        if let Some(mismatch) = &row.inexact {
+            let _ = writeln!(text, "device {} is not exact: {mismatch}", row.index);
+        }
+        if let Some(problem) = &row.exact_problem {
+            let _ = writeln!(text, "device {} may be exact or not: {problem}", row.index);
         }
     }
     if let Some(problem) = &answer.problem {
@@ -148,18 +207,21 @@ mod tests {
     fn the_table_lines_up_and_gives_the_reasons_below() {
         let answer = json!({
             "devices": [
-                { "index": 0, "name": "Soft", "kind": "cpu", "vulkan_version": "1.3.0", "driver": "lava", "driver_version": "2", "missing": [] },
+                { "index": 0, "name": "Soft", "kind": "cpu", "vulkan_version": "1.3.0", "driver": "lava", "driver_version": "2", "missing": [],
+                  "exact": false, "exact_problem": null,
+                  "inexact": { "twin": "div", "arguments": [0x3f80_0000u32, 0x4000_0000u32], "cpu": [0x3f00_0000u32], "device": [0u32] } },
                 { "index": 1, "name": "Old Card", "kind": "discrete", "vulkan_version": "1.1.0", "driver": "", "driver_version": "",
-                  "missing": ["Vulkan 1.1.0 only"] },
+                  "missing": ["Vulkan 1.1.0 only"], "exact": null, "inexact": null, "exact_problem": null },
             ],
             "problem": null,
         });
         let text = table(&Answer::deserialize(answer).unwrap(), 2);
         let expected = "\
-DEVICE  NAME                         KIND      VULKAN  DRIVER  USABLE
-0       Soft                         cpu       1.3.0   lava 2  yes
-1       Old Card                     discrete  1.1.0           no
--       the CPU backend (2 threads)  cpu       -       -       yes
+DEVICE  NAME                         KIND      VULKAN  DRIVER  USABLE  EXACT
+0       Soft                         cpu       1.3.0   lava 2  yes     no (div, 1.0 2.0)
+1       Old Card                     discrete  1.1.0           no      -
+-       the CPU backend (2 threads)  cpu       -       -       yes     yes
+device 0 is not exact: div(1.0 (0x3f800000), 2.0 (0x40000000)): cpu 0.5 (0x3f000000), device 0.0 (0x00000000)
 device 1 cannot be used: Vulkan 1.1.0 only
 ";
         assert_eq!(text, expected);

@@ -13,6 +13,12 @@ use std::process::ExitCode;
 ///
 /// One film alone is only converted. Prints the film hash.
 #[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  gonio merge a.gfilm b.gfilm -o whole.gfilm              samples of two machines
+  gonio merge a.gfilm b.gfilm -o whole.png                the picture that one machine would have made
+  gonio merge film.gfilm -o picture.exr                   one film, converted
+  gonio merge film.gfilm -o brighter.png --exposure 1     and displayed differently")]
 pub struct MergeArgs {
     /// Films, `.gfilm`; `-` is standard input, once
     #[arg(required = true, value_name = "FILM")]

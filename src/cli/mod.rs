@@ -2,6 +2,7 @@
 
 pub mod compare;
 pub mod devices;
+mod exact;
 mod interrupt;
 pub mod merge;
 mod output;
@@ -10,6 +11,7 @@ mod progress;
 pub mod render;
 mod setup;
 
+use anyhow::Context;
 use clap::{Parser, Subcommand};
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -50,6 +52,11 @@ enum Command {
     /// List what can be used, and why the rest cannot.
     Devices(devices::DevicesArgs),
     /// Print a completion script for a shell.
+    #[command(after_help = "\
+Examples:
+  gonio completions bash > ~/.local/share/bash-completion/completions/gonio
+  gonio completions zsh > ~/.zfunc/_gonio
+  gonio completions fish > ~/.config/fish/completions/gonio.fish")]
     Completions {
         /// bash, zsh, fish, elvish or powershell.
         shell: clap_complete::Shell,
@@ -81,8 +88,11 @@ pub fn main() -> ExitCode {
         Command::Compare(args) => compare::run(args),
         Command::Devices(args) => devices::run(args),
         Command::Completions { shell } => {
-            clap_complete::generate(*shell, &mut <Cli as clap::CommandFactory>::command(), "gonio", &mut io::stdout());
-            Ok(ExitCode::SUCCESS)
+            // Into memory first: the generator panics where it cannot write.
+            let mut script = Vec::new();
+            clap_complete::generate(*shell, &mut <Cli as clap::CommandFactory>::command(), "gonio", &mut script);
+            let written = io::stdout().write_all(&script).and_then(|()| io::stdout().flush());
+            written.context("cannot write standard output").map(|()| ExitCode::SUCCESS)
         }
     };
     result.unwrap_or_else(|error| {

@@ -1,6 +1,6 @@
 //! `gonio parity`: the same samples on two backends, bit for bit.
 
-use super::setup::{BackendFlags, BackendName, FetchName, SceneFlags, bake_scene, film_of};
+use super::setup::{BackendFlags, BackendName, FetchName, SceneFlags, bake_scene, film_of, thread_count};
 use super::{EXIT_DIFFERS, Usage, render};
 use crate::bake::SceneData;
 use crate::film::{Film, Rect};
@@ -46,8 +46,11 @@ pub struct ParityArgs {
     #[arg(long, default_value = "auto")]
     fetch: FetchName,
     /// Threads of the CPU backend.
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(short, long, value_name = "N", value_parser = thread_count)]
+    threads: Option<usize>,
+    /// Fail on a Vulkan device that the strictness probe finds inexact, before any scene is compared on it.
+    #[arg(long)]
+    require_exact: bool,
 }
 
 /// One side of a comparison.
@@ -62,12 +65,12 @@ impl FromStr for Contender {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let mut parts = text.split(':');
-        let mut flags = BackendFlags::default();
-        flags.backend = match parts.next() {
+        let backend = match parts.next() {
             Some("cpu") => BackendName::Cpu,
             Some("vulkan") => BackendName::Vulkan,
             _ => return Err("expected cpu, vulkan, vulkan:DEVICE or vulkan:DEVICE:FETCH".to_owned()),
         };
+        let mut flags = BackendFlags { backend, ..BackendFlags::default() };
         if flags.backend == BackendName::Vulkan {
             flags.device = parts.next().filter(|name| !name.is_empty()).map(str::to_owned);
             flags.fetch = match parts.next() {
@@ -144,6 +147,7 @@ impl ParityArgs {
     fn contenders(&self) -> Vec<Contender> {
         let complete = |mut contender: Contender| {
             contender.flags.threads = self.threads;
+            contender.flags.require_exact = self.require_exact;
             if contender.flags.device.is_none() {
                 contender.flags.device = self.device.clone();
             }
@@ -297,8 +301,11 @@ fn check_expected(result: &SceneResult, expected: &Expected, quiet: bool) -> std
         Some(hash) => (format!("{key}: hash {} differs from the recorded {hash}", result.film_hash), false),
         None => (format!("{key}: no hash recorded"), false),
     };
-    if !quiet {
-        writeln!(std::io::stdout(), "{line}")?;
+    match quiet {
+        // Standard output is the JSON's.
+        true if !same => log::warn!("{line}"),
+        true => {}
+        false => writeln!(std::io::stdout(), "{line}")?,
     }
     Ok(same)
 }

@@ -9,6 +9,7 @@ use crate::film::write::{Aov, Format};
 use crate::film::{Film, OutputFile, Rect};
 use crate::render::{Bounce, Counters, Job, Renderer, Watch};
 use crate::scene::Scene;
+use anyhow::Context;
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -42,7 +43,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "X,Y", conflicts_with_all = ["output", "time"])]
     pixel: Option<Pixel>,
     /// Stop at the end of the pass during which this time runs out.
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = parse_seconds)]
     time: Option<Duration>,
     /// Further layers of an EXR, separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
@@ -94,17 +95,21 @@ struct Outcome {
 }
 
 pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
-    let interrupt = Interrupt::listen()?;
     let scene = args.scene_flags.load(&args.scene)?;
     let crop = crop_of(&scene, args.crop)?;
     if let Some(pixel) = args.pixel {
         return inspect(args, &scene, pixel);
     }
+    // From here on there is something to clean up or to save; before, a signal just ends the program.
+    let interrupt = Interrupt::listen()?;
     // Opened first: a bad path must not cost a render.
     let path = args.output.clone().unwrap_or_else(|| default_output(&args.scene));
     let format = args.picture.format_of(&path)?;
     if !args.aov.is_empty() && !matches!(format, Format::Exr | Format::Gfilm) {
         return Err(Usage(format!("--aov needs an .exr (or .gfilm) file, not {}", path.display())).into());
+    }
+    if path == Path::new("-") && args.stats.as_deref() == Some(Path::new("-")) {
+        return Err(Usage("--output - and --stats - cannot both go to standard output".to_owned()).into());
     }
     let output = OutputFile::open(&path)?;
     let stats_file = args.stats.as_deref().map(OutputFile::open).transpose()?;
@@ -131,7 +136,7 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     args.picture.write(&mut film, format, &args.aov, output)?;
     if let Some(mut file) = stats_file {
         let stats = stats_json(args, &data, &film, renderer.as_ref(), &outcome, bake_time);
-        writeln!(file, "{stats:#}")?;
+        writeln!(file, "{stats:#}").with_context(|| format!("cannot write {}", file.path().display()))?;
         file.commit()?;
     }
     log::info!("{} in {:.2} s", path.display(), outcome.render_time.as_secs_f64());
@@ -174,8 +179,9 @@ fn render_passes(
         if outcome.interrupted.is_some() || time.is_some_and(|limit| start.elapsed() >= limit) {
             break;
         }
-        // Passes of about half a second: long enough to fill a device, short enough to stop at.
-        pass_samples = (f64::from(end - next) * 0.5 / pass_time.as_secs_f64().max(1e-4))
+        // Passes of about half a second: long enough to fill a device, short enough to stop at; shorter if time runs out.
+        let left = time.map_or(0.5, |limit| limit.saturating_sub(start.elapsed()).as_secs_f64().min(0.5));
+        pass_samples = (f64::from(end - next) * left / pass_time.as_secs_f64().max(1e-4))
             .clamp(1.0, f64::from(4 * (end - next))) as u32;
         next = end;
     }

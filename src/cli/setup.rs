@@ -1,6 +1,6 @@
 //! What render, parity and others share: from flags to a baked scene and a renderer.
 
-use super::Usage;
+use super::{Usage, exact};
 use crate::bake::{SceneData, bake};
 use crate::film::{Film, FilmSpec, Rect};
 use crate::render::cpu::CpuRenderer;
@@ -163,6 +163,14 @@ impl From<FetchName> for FetchChoice {
     }
 }
 
+/// Parses `--threads`. A million threads would take the machine's memory.
+pub fn thread_count(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count @ 1..=1024) => Ok(count),
+        _ => Err("expected a number from 1 to 1024".to_owned()),
+    }
+}
+
 /// What to compute on.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Device")]
@@ -178,27 +186,35 @@ pub struct BackendFlags {
     #[arg(long, default_value = "auto")]
     pub fetch: FetchName,
     /// Threads of the CPU backend; as many as cores if not given.
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    #[arg(short, long, value_name = "N", value_parser = thread_count)]
+    pub threads: Option<usize>,
+    /// Fail on a Vulkan device that does not compute every bit as it must (`gonio devices`), instead of a warning.
+    #[arg(long)]
+    pub require_exact: bool,
 }
 
 impl BackendFlags {
-    /// The renderer the flags ask for.
+    /// The renderer the flags ask for, its device proved exact or warned of. The CPU backend is exact by definition.
     pub fn renderer<'a>(&self, data: &'a SceneData) -> Result<Box<dyn Renderer + 'a>, RenderError> {
         let vulkan = || VulkanRenderer::new(data, self.vulkan_options());
         match self.backend {
-            BackendName::Cpu => Ok(Box::new(CpuRenderer::new(data, self.threads.map(usize::from))?)),
-            BackendName::Vulkan => Ok(Box::new(vulkan()?)),
-            BackendName::Auto if self.device.is_some() => Ok(Box::new(vulkan()?)),
+            BackendName::Cpu => Ok(Box::new(CpuRenderer::new(data, self.threads)?)),
+            BackendName::Vulkan => self.proved(vulkan()?),
+            BackendName::Auto if self.device.is_some() => self.proved(vulkan()?),
             BackendName::Auto => match vulkan() {
-                Ok(renderer) => Ok(Box::new(renderer)),
+                Ok(renderer) => self.proved(renderer),
                 Err(RenderError::NoDevice(reason)) => {
                     log::warn!("{reason}: using the CPU backend");
-                    Ok(Box::new(CpuRenderer::new(data, self.threads.map(usize::from))?))
+                    Ok(Box::new(CpuRenderer::new(data, self.threads)?))
                 }
                 Err(error) => Err(error),
             },
         }
+    }
+
+    fn proved<'a>(&self, mut renderer: VulkanRenderer) -> Result<Box<dyn Renderer + 'a>, RenderError> {
+        exact::check(renderer.context_mut(), self.require_exact)?;
+        Ok(Box::new(renderer))
     }
 
     fn vulkan_options(&self) -> VulkanOptions {

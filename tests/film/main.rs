@@ -185,7 +185,7 @@ fn more_samples_than_the_sums_can_hold_are_refused() {
     film.merge(&recorded(MAX_SAMPLES - 1..MAX_SAMPLES)).unwrap();
     assert_eq!(film.samples().total(), u64::from(MAX_SAMPLES));
 
-    let mut ranges = SampleRanges::new([0..MAX_SAMPLES]).unwrap();
+    let mut ranges = SampleRanges::new(std::iter::once(0..MAX_SAMPLES)).unwrap();
     let error = ranges.insert(MAX_SAMPLES..MAX_SAMPLES + 1).unwrap_err();
     assert_eq!(error, MergeError::TooMany { total: u64::from(MAX_SAMPLES) + 1 });
 }

@@ -177,7 +177,10 @@ fn an_error_that_shows_only_when_the_buffer_is_emptied_is_reported() {
     let path = named_pipe(folder.path());
     let (sender, receiver) = std::sync::mpsc::channel();
     let reader = path.clone();
-    std::thread::spawn(move || sender.send(drop(fs::File::open(reader).unwrap())));
+    std::thread::spawn(move || {
+        drop(fs::File::open(reader).unwrap());
+        sender.send(())
+    });
     let mut file = OutputFile::open(&path).unwrap();
     receiver.recv_timeout(std::time::Duration::from_secs(10)).unwrap();
     // Nobody reads any more, but so little stays in the buffer until the end.

@@ -48,5 +48,10 @@ void main() {
         result(1u, spectrum_luminance(s));
         result4(2u, s);
         break;
+    case 11u:
+        s = spectrum_flush(vec4(argument3(0u), argument(3u)));
+        result4(0u, s);
+        result3(4u, spectrum_to_rgb(s) + spectrum_to_rgb(spectrum_zero()));
+        break;
     }
 }

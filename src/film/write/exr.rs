@@ -30,8 +30,8 @@ pub fn write(film: &Film, wanted: &[Aov], out: &mut dyn Write) -> io::Result<()>
         add_aov(&mut channels, film, aovs.as_ref(), aov);
     }
 
-    let mut attributes = LayerAttributes::default();
-    attributes.layer_position = Vec2(spec.crop.x as i32, spec.crop.y as i32);
+    let layer_position = Vec2(spec.crop.x as i32, spec.crop.y as i32);
+    let mut attributes = LayerAttributes { layer_position, ..Default::default() };
     let facts = facts(film);
     let value = |key: &str| facts.iter().find(|(k, _)| *k == key).map_or("", |(_, v)| v.as_str());
     attributes.software_name = Some(text(value("Software")));

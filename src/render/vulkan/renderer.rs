@@ -100,6 +100,11 @@ impl VulkanRenderer {
         self.scene.page_counts()
     }
 
+    /// The device in use, for the strictness probe.
+    pub fn context_mut(&mut self) -> &mut Context {
+        &mut self.context
+    }
+
     /// What the validation layers have to say; also after the renderer is gone.
     pub fn messages(&self) -> Arc<Messages> {
         self.context.messages()

@@ -3,7 +3,9 @@
 use super::{Family, In, Twin};
 use crate::layout::FilmSum;
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, hash_u32, sample_1d, sample_2d, unit_float};
-use crate::shading::spectrum::{spectrum_from_rgb, spectrum_luminance, spectrum_max};
+use crate::shading::spectrum::{
+    spectrum_flush, spectrum_from_rgb, spectrum_luminance, spectrum_max, spectrum_to_rgb, spectrum_zero,
+};
 use crate::transport::film::{Fixed, add_fixed, clamp_sample, dither_lane, to_fixed};
 use crate::verify::inputs::Domain::{self, Below, Bits, Exponent, Range};
 
@@ -100,6 +102,14 @@ pub const FAMILY: Family = Family {
             run: |i, o| {
                 let s = spectrum_from_rgb(i.v3(0));
                 o.f(spectrum_max(s)).f(spectrum_luminance(s)).v4(s);
+            },
+        },
+        Twin {
+            name: "spectrum_flush spectrum_to_rgb spectrum_zero",
+            domains: &[Bits; 4],
+            run: |i, o| {
+                let s = spectrum_flush(i.v4(0));
+                o.v4(s).v3(spectrum_to_rgb(s) + spectrum_to_rgb(spectrum_zero()));
             },
         },
     ],

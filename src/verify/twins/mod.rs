@@ -4,12 +4,15 @@ pub mod film;
 pub mod math;
 pub mod models;
 pub mod shading;
+pub mod trace;
+pub mod warp;
 
 use super::inputs::{ARGUMENTS, Domain, arguments};
 use crate::render::RenderError;
 use crate::render::vulkan::{BufferSpec, Context};
 use crate::shaders::{Fetch, kernel};
 use glam::{Vec2, Vec3, Vec4};
+use serde::{Deserialize, Serialize};
 
 /// Words of results one evaluation gives.
 pub const RESULTS: usize = 8;
@@ -28,7 +31,8 @@ pub struct Family {
 }
 
 /// All of them.
-pub static FAMILIES: &[Family] = &[math::FAMILY, film::FAMILY, shading::FAMILY, models::FAMILY];
+pub static FAMILIES: &[Family] =
+    &[math::FAMILY, film::FAMILY, shading::FAMILY, models::FAMILY, warp::FAMILY, trace::FAMILY];
 
 /// The arguments of one evaluation, read as the harness in GLSL reads them.
 pub struct In<'a>(&'a [u32]);
@@ -48,6 +52,10 @@ impl In<'_> {
 
     pub fn v3(&self, k: usize) -> Vec3 {
         Vec3::new(self.f(k), self.f(k + 1), self.f(k + 2))
+    }
+
+    pub fn v4(&self, k: usize) -> Vec4 {
+        self.v3(k).extend(self.f(k + 3))
     }
 }
 
@@ -83,9 +91,11 @@ impl Out {
 }
 
 /// Where two sides disagreed.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Mismatch {
-    pub twin: &'static str,
+    /// The function, or those that one evaluation runs.
+    pub twin: String,
     pub arguments: Vec<u32>,
     pub cpu: Vec<u32>,
     pub device: Vec<u32>,
@@ -136,7 +146,7 @@ pub fn compare(
         if !out.words[..out.count].iter().zip(device).all(|(a, b)| same(*a, *b)) {
             differ += 1;
             first.get_or_insert_with(|| Mismatch {
-                twin: twin.name,
+                twin: twin.name.to_owned(),
                 arguments: set[..twin.domains.iter().map(|d| d.words()).sum()].to_vec(),
                 cpu: out.words[..out.count].to_vec(),
                 device: device[..out.count].to_vec(),

@@ -1,0 +1,11 @@
+//! The command line as a user meets it: the program is started, and its files, output and exit code are judged.
+
+mod bad_files;
+mod bad_text;
+mod films;
+mod messages;
+mod parity;
+mod pictures;
+mod render;
+mod signals;
+mod support;

@@ -1,0 +1,96 @@
+//! `gonio parity`.
+
+use super::support::{Folder, has_device};
+
+#[test]
+fn device_agrees_with_the_cpu_through_both_fetch_paths() {
+    if !has_device() {
+        return;
+    }
+    let folder = Folder::new();
+    let out = folder.done(&["parity", "scene.toml", "--size", "16x12", "--spp", "1"]);
+    let lines: Vec<&str> = out.lines().collect();
+    assert_eq!(lines.len(), 2, "{out}");
+    for (line, path) in lines.iter().zip(["vulkan texel", "vulkan storage"]) {
+        assert!(line.starts_with("scene.toml: 0 of 192 pixels differ (16x12, 1 samples, seed 0; cpu and "), "{line}");
+        assert!(line.contains(path), "{line}");
+    }
+}
+
+#[test]
+fn contenders_can_be_named() {
+    let folder = Folder::new();
+    let out = folder.done(&["parity", "scene.toml", "--between", "cpu,cpu"]);
+    assert!(out.starts_with("scene.toml: 0 of 768 pixels differ (32x24, 2 samples, seed 0; cpu and cpu"), "{out}");
+    folder.fails(2, &["parity", "scene.toml", "--between", "cpu"]);
+    folder.fails(2, &["parity", "scene.toml", "--between", "cpu,abacus"]);
+    folder.fails(2, &["parity", "scene.toml", "--between", "cpu,vulkan:0:magic"]);
+}
+
+/// Records the hash of the scene on the CPU in `expect.json`.
+fn record(folder: &Folder) -> serde_json::Value {
+    let json = folder.done(&["parity", "scene.toml", "--between", "cpu,cpu", "--json"]);
+    folder.file("expect.json", &json);
+    serde_json::from_str(&json).expect("JSON")
+}
+
+#[test]
+fn recorded_hashes_are_met_again() {
+    let folder = Folder::new();
+    let document = record(&folder);
+    let scene = &document["scenes"][0];
+    assert_eq!((&scene["scene"], &scene["comparisons"][0]["differ"]), (&"scene.toml".into(), &0.into()), "{document}");
+    let out = folder.done(&["parity", "scene.toml", "--between", "cpu,cpu", "--expect", "expect.json"]);
+    assert!(out.contains("scene.toml at 32x24, 2 samples, seed 0: the recorded hash"), "{out}");
+    // One backend is enough where there is something to compare it with.
+    folder.done(&["parity", "scene.toml", "--between", "cpu", "--expect", "expect.json"]);
+}
+
+#[test]
+fn film_hash_of_parity_is_that_of_render() {
+    let folder = Folder::new();
+    let document = record(&folder);
+    let report = folder.cpu(&["render", "scene.toml", "-o", "a.gfilm"]);
+    assert_eq!(document["scenes"][0]["film_hash"], super::support::line(&report, "film"));
+}
+
+#[test]
+fn hash_that_was_tampered_with_is_told() {
+    let folder = Folder::new();
+    let hash = record(&folder)["scenes"][0]["film_hash"].as_str().expect("a hash").to_owned();
+    let other = format!("{}{}", if hash.starts_with('0') { '1' } else { '0' }, &hash[1..]);
+    let text = String::from_utf8(folder.bytes("expect.json")).expect("text");
+    folder.file("tampered.json", text.replace(&hash, &other));
+    let args = ["parity", "scene.toml", "--between", "cpu,cpu", "--expect", "tampered.json"];
+    let ended = folder.run(&args);
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+    let told = format!("hash {hash} differs from the recorded {other}");
+    assert!(ended.text().contains(&told), "{}", ended.text());
+    let json = folder.run(&[&args[..], &["--json"]].concat());
+    assert_eq!(json.code, Some(1));
+    assert!(serde_json::from_slice::<serde_json::Value>(&json.out).is_ok(), "{}", json.text());
+    assert!(json.stderr.contains(&told), "with --json the line goes to standard error: {}", json.stderr);
+}
+
+#[test]
+fn scene_that_was_never_recorded_is_a_difference() {
+    let folder = Folder::new();
+    record(&folder);
+    let ended = folder.run(&["parity", "scene.toml", "--seed", "9", "--between", "cpu", "--expect", "expect.json"]);
+    assert_eq!(ended.code, Some(1));
+    assert!(ended.text().contains("seed 9: no hash recorded"), "{}", ended.text());
+}
+
+#[test]
+fn expect_file_that_is_missing_or_no_record_is_refused() {
+    let folder = Folder::new();
+    let args = ["parity", "scene.toml", "--between", "cpu,cpu", "--expect", "expect.json"];
+    assert!(folder.fails(74, &args).starts_with("error: cannot read expect.json: "));
+    for bad in
+        ["", "{", "[]", "{\"scenes\": 3}", "{\"scenes\": [{}]}", "{\"scenes\": [{\"scene\": \"a\", \"width\": -1}]}"]
+    {
+        folder.file("expect.json", bad);
+        let message = folder.fails(65, &args);
+        assert!(message.starts_with("error: expect.json: ") && message.lines().count() == 1, "{message}");
+    }
+}

@@ -1,0 +1,77 @@
+//! Ctrl-C and SIGTERM: what was finished is saved, soon.
+#![cfg(unix)]
+
+use super::support::{Folder, program};
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+/// Ends the child if the test ends first.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // An error means that it has ended, as it should.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+impl Running {
+    /// A render that would take days, once it has begun.
+    fn render(folder: &Folder, output: &str) -> Self {
+        let mut command = Command::new(program());
+        command.args(["render", "scene.toml", "--backend", "cpu", "--spp", "16777216", "--verbose", "-o", output]);
+        let child = command.current_dir(folder.path("")).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
+        let mut running = Self(child.expect("the program starts"));
+        let stderr = running.0.stderr.take().expect("piped");
+        let mut lines = BufReader::new(stderr).lines();
+        assert!(lines.any(|line| line.is_ok_and(|line| line.starts_with("rendering on cpu"))), "it never began");
+        // Keeps the pipe open and empty, or the next message would meet a closed one.
+        std::thread::spawn(move || lines.for_each(drop));
+        std::thread::sleep(Duration::from_millis(300));
+        running
+    }
+
+    fn signal(&self, name: &str) {
+        let sent = Command::new("kill").args([name, &self.0.id().to_string()]).status();
+        assert!(sent.expect("kill starts").success());
+    }
+
+    fn ends(&mut self) -> ExitStatus {
+        let start = Instant::now();
+        loop {
+            if let Some(status) = self.0.try_wait().expect("a child") {
+                return status;
+            }
+            assert!(start.elapsed() < Duration::from_secs(20), "it did not end");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+#[test]
+fn ctrl_c_saves_the_film_so_far_and_exits_with_130() {
+    let folder = Folder::new();
+    let mut render = Running::render(&folder, "a.gfilm");
+    render.signal("-INT");
+    assert_eq!(render.ends().code(), Some(130));
+    let film = folder.film("a.gfilm");
+    let samples = film.samples().to_string();
+    assert!(film.samples().total() > 0 && samples.starts_with("0.."), "{samples}");
+    // A whole number of samples of every pixel: the same number on purpose is the same film.
+    let again = folder.cpu(&["render", "scene.toml", "-o", "b.gfilm", "--samples", &samples]);
+    assert_eq!(super::support::line(&again, "film"), film.hash().to_string());
+}
+
+#[test]
+fn sigterm_saves_the_picture_so_far_and_exits_with_143() {
+    let folder = Folder::new();
+    let mut render = Running::render(&folder, "a.png");
+    render.signal("-TERM");
+    assert_eq!(render.ends().code(), Some(143));
+    let picture = folder.picture("a.png");
+    assert_eq!((picture.image.width, picture.image.height), (32, 24));
+    assert!(picture.image.pixels.iter().any(|pixel| pixel[0] > 0.0));
+    assert_eq!(folder.names(), ["a.png", "scene.toml"]);
+}
