@@ -6,7 +6,8 @@ mod device;
 use gonio::bake::SceneData;
 use gonio::layout::{Node, PathState, Triangle};
 use gonio::render::vulkan::{
-    Bound, BufferSpec, FetchChoice, Instance, Place, SceneBuffers, VulkanError, WORKGROUP, bindings,
+    BindingKind, Bound, BufferSpec, FetchChoice, Instance, Place, STORAGE_FETCH_STORAGE_BUFFERS, SceneBuffers,
+    TEXEL_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_TEXEL_BUFFERS, VulkanError, WORKGROUP, bindings,
 };
 use gonio::shaders::{self, Fetch};
 use std::path::Path;
@@ -196,6 +197,23 @@ fn only_bindings_that_a_kernel_reaches_are_bound() {
     let words = shaders::kernel("parity/layout", Fetch::Storage).expect("embedded by build.rs");
     let found = bindings(words).unwrap();
     assert_eq!(found.iter().map(|b| (b.set, b.binding, b.count)).collect::<Vec<_>>(), [(0, 0, 1), (0, 1, 1)]);
+}
+
+#[test]
+fn kernels_bind_no_more_than_devices_are_asked_for() {
+    let mut largest = [0; 4];
+    for name in shaders::names() {
+        for (fetch, at) in [(Fetch::Storage, 0), (Fetch::Texel, 2)] {
+            let found = bindings(shaders::kernel(name, fetch).expect("listed")).unwrap();
+            let count = |kind| found.iter().filter(|b| b.kind == kind).map(|b| b.count).sum::<u32>();
+            largest[at] = count(BindingKind::StorageBuffer).max(largest[at]);
+            largest[at + 1] = count(BindingKind::TexelBuffer).max(largest[at + 1]);
+        }
+    }
+    let [storage, storage_texel, texel_storage, texel] = largest;
+    assert!(storage <= STORAGE_FETCH_STORAGE_BUFFERS && storage_texel == 0, "storage fetch binds {largest:?}");
+    assert!(texel_storage <= TEXEL_FETCH_STORAGE_BUFFERS && texel <= TEXEL_FETCH_TEXEL_BUFFERS, "texel: {largest:?}");
+    assert!(storage > TEXEL_FETCH_STORAGE_BUFFERS, "a kernel fetches the scene: {largest:?}");
 }
 
 #[test]

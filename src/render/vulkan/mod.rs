@@ -21,7 +21,10 @@ mod scene;
 mod validation;
 
 pub use context::{BufferSpec, Context, Device, Submission};
-pub use device::{DeviceChoice, DeviceInfo, DeviceKind, Limits, float_control_names};
+pub use device::{
+    DeviceChoice, DeviceInfo, DeviceKind, Limits, STORAGE_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_STORAGE_BUFFERS,
+    TEXEL_FETCH_TEXEL_BUFFERS, float_control_names,
+};
 pub use error::VulkanError;
 pub use instance::Instance;
 pub use kernel::{Bound, Kernel, WORKGROUP};
