@@ -8,9 +8,9 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-#[path = "build/compile.rs"]
+#[path = "shaders/build/compile.rs"]
 mod compile;
-#[path = "build/strict.rs"]
+#[path = "shaders/build/strict.rs"]
 mod strict;
 
 /// Folders with entry points, below `shaders/`, and the prefix of their kernels' names.

@@ -190,7 +190,7 @@ fn every_shader_file_has_its_include_guard() {
 #[test]
 fn no_file_is_longer_than_500_lines_and_no_kernel_than_80() {
     let mut found = Vec::new();
-    for folder in ["src", "shaders", "tests", "build", "build.rs"] {
+    for folder in ["src", "shaders", "tests", "build.rs"] {
         for file in sources(folder, &["rs", "glsl", "comp"]) {
             let lines = file.text.lines().count();
             let is_kernel = file.path.starts_with("shaders/kernels/") && file.path.matches('/').count() == 2;
@@ -400,7 +400,7 @@ fn unjustified(file: &Source) -> Vec<String> {
 
 #[test]
 fn unsafe_code_lives_in_the_vulkan_backend_and_says_why_it_is_sound() {
-    let files = ["src", "tests", "build", "build.rs"].into_iter().flat_map(|folder| sources(folder, &["rs"]));
+    let files = ["src", "tests", "shaders/build", "build.rs"].into_iter().flat_map(|folder| sources(folder, &["rs"]));
     let found: Vec<_> = files.flat_map(|file| unjustified(&file)).collect();
     assert!(found.is_empty(), "{found:#?}");
     let count = |path: &str, text: &str| unjustified(&Source::new(path, text)).len();

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use gonio::render::vulkan::{BufferSpec, Context};
 use gonio::shaders::{self, Fetch};
 
-#[path = "../build/compile.rs"]
+#[path = "../shaders/build/compile.rs"]
 mod compile;
 #[path = "common/device.rs"]
 mod device;

@@ -9,9 +9,9 @@ use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::grammar::INSTRUCTION_TABLE;
 use rspirv::spirv::{GlslStd450Op, Op};
 
-#[path = "../build/compile.rs"]
+#[path = "../shaders/build/compile.rs"]
 mod compile;
-#[path = "../build/strict.rs"]
+#[path = "../shaders/build/strict.rs"]
 mod strict;
 
 const FETCHES: [Fetch; 2] = [Fetch::Texel, Fetch::Storage];
@@ -143,7 +143,7 @@ fn every_exact_glsl_expression_is_accepted() {
 
 #[test]
 fn every_core_operation_outside_the_list_is_refused() {
-    // Written out a second time on purpose: a slip in build/strict.rs must not pass for the rule.
+    // Written out a second time on purpose: a slip in shaders/build/strict.rs must not pass for the rule.
     let allowed = "FAdd FSub FMul FNegate VectorTimesScalar \
         ConvertFToU ConvertFToS ConvertSToF ConvertUToF Bitcast \
         FOrdEqual FUnordEqual FOrdNotEqual FUnordNotEqual FOrdLessThan FUnordLessThan FOrdGreaterThan \
