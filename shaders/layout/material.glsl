@@ -18,10 +18,8 @@ const uint MATERIAL_FILTERED = 1u;
 const uint MATERIAL_CONDUCTOR = 2u;
 // Material flag: Phong's lobe normalised by (n + 2) / 2 pi (Lafortune and Willems 1994); else as printed.
 const uint MATERIAL_LAFORTUNE = 4u;
-// Material flag: Cook-Torrance's D as the 1982 paper prints it, without 1/4... (LECTURE row 14).
+// Material flag: Cook-Torrance's D as the 1982 paper prints it, four times the normalised one.
 const uint MATERIAL_D_1982 = 8u;
-// Material flag: only the front (the side of the geometric normal) is shaded; the back passes rays through.
-const uint MATERIAL_ONE_SIDED = 16u;
 
 // One material. 144 bytes. Colours are linear Rec. 709.
 struct Material {

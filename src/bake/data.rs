@@ -79,17 +79,10 @@ impl SceneData {
             self.instances.iter().map(|instance| Instance { root: 0, ..*instance }).collect();
         let mut hasher = blake3::Hasher::new();
         hasher.update(b"gonio scene 1");
-        for bytes in [
-            bytemuck::bytes_of(&header),
-            bytemuck::cast_slice(&instances),
-            bytemuck::cast_slice(&self.faces),
-            bytemuck::cast_slice(&self.vertices),
-            bytemuck::cast_slice(&self.materials),
-            bytemuck::cast_slice(&self.lights),
-            bytemuck::cast_slice(&self.textures),
-            bytemuck::cast_slice(&self.texels),
-            bytemuck::cast_slice(&self.tables),
-        ] {
+        // Of the heap, all but the instances, which name their roots, and the order of the top level.
+        let [_, _, rest @ ..] = self.heap_arrays();
+        let placed = [bytemuck::bytes_of(&header), bytemuck::cast_slice(&instances)];
+        for bytes in placed.into_iter().chain(rest) {
             hasher.update(&(bytes.len() as u64).to_le_bytes());
             hasher.update(bytes);
         }

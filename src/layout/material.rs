@@ -19,10 +19,8 @@ pub const MATERIAL_FILTERED: u32 = 1;
 pub const MATERIAL_CONDUCTOR: u32 = 2;
 /// Material flag: Phong's lobe normalised by (n + 2) / 2 pi (Lafortune and Willems 1994); else as printed.
 pub const MATERIAL_LAFORTUNE: u32 = 4;
-/// Material flag: Cook-Torrance's D as the 1982 paper prints it, without 1/4... (LECTURE row 14).
+/// Material flag: Cook-Torrance's D as the 1982 paper prints it, four times the normalised one.
 pub const MATERIAL_D_1982: u32 = 8;
-/// Material flag: only the front (the side of the geometric normal) is shaded; the back passes rays through.
-pub const MATERIAL_ONE_SIDED: u32 = 16;
 
 /// One material. 144 bytes. Colours are linear Rec. 709.
 #[repr(C)]

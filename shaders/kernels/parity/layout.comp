@@ -112,22 +112,21 @@ void store_constants() {
     constants[37] = MATERIAL_CONDUCTOR;
     constants[38] = MATERIAL_LAFORTUNE;
     constants[39] = MATERIAL_D_1982;
-    constants[40] = MATERIAL_ONE_SIDED;
-    constants[41] = MATERIAL_WORDS;
-    constants[42] = floatBitsToUint(T_INFINITE);
-    constants[43] = HIT_WORDS;
-    constants[44] = PATH_STATE_WORDS;
-    constants[45] = SHADOW_RAY_WORDS;
-    constants[46] = TEXEL_SRGB8;
-    constants[47] = TEXEL_LINEAR8;
-    constants[48] = TEXEL_FLOAT;
-    constants[49] = WRAP_REPEAT;
-    constants[50] = WRAP_CLAMP;
-    constants[51] = WRAP_MIRROR;
-    constants[52] = MAGNIFY_NEAREST;
-    constants[53] = MAGNIFY_BILINEAR;
-    constants[54] = TEXTURE_WORDS;
-    constants[55] = STACK_SIZE;
+    constants[40] = MATERIAL_WORDS;
+    constants[41] = floatBitsToUint(T_INFINITE);
+    constants[42] = HIT_WORDS;
+    constants[43] = PATH_STATE_WORDS;
+    constants[44] = SHADOW_RAY_WORDS;
+    constants[45] = TEXEL_SRGB8;
+    constants[46] = TEXEL_LINEAR8;
+    constants[47] = TEXEL_FLOAT;
+    constants[48] = WRAP_REPEAT;
+    constants[49] = WRAP_CLAMP;
+    constants[50] = WRAP_MIRROR;
+    constants[51] = MAGNIFY_NEAREST;
+    constants[52] = MAGNIFY_BILINEAR;
+    constants[53] = TEXTURE_WORDS;
+    constants[54] = STACK_SIZE;
 }
 
 void main() {

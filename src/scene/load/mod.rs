@@ -18,14 +18,21 @@ use crate::scene::{Location, Scene, SceneError};
 use std::io::Read;
 use std::path::Path;
 
+/// Bytes of a scene on standard input at most: text of a size that nobody writes, so an endless stream ends.
+const STDIN_MAX: u64 = 64 << 20;
+
 /// Loads the scene in `path`, its format told by the extension: `.toml`, `.obj`, `.gltf`, `.glb`, `.ply`; `-` is TOML on
 /// standard input. What the scene lacks to be a picture (a mesh has no camera) is staged.
 pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
     if path == Path::new("-") {
         let name = Path::new("<stdin>");
         let mut bytes = Vec::new();
-        let read = std::io::stdin().lock().read_to_end(&mut bytes);
+        let read = std::io::stdin().lock().take(STDIN_MAX + 1).read_to_end(&mut bytes);
         read.map_err(|source| SceneError::Io { location: Location::file(name), source })?;
+        if bytes.len() as u64 > STDIN_MAX {
+            let message = format!("a scene on standard input has at most {STDIN_MAX} bytes");
+            return Err(SceneError::bad(Location::file(name), message));
+        }
         return toml::scene_from_text(name, text::utf8(name, bytes)?, overrides);
     }
     if extension(path) == "toml" {
