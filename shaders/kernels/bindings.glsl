@@ -16,6 +16,8 @@ layout(constant_id = 1) const uint NODE_PAGES = 1u;
 layout(constant_id = 2) const uint TRIANGLE_PAGES = 1u;
 layout(constant_id = 3) const uint DATA_PAGES = 1u;
 layout(constant_id = 4) const uint PAGE_SHIFT = 31u;
+// Entries of each traversal stack that the scene's hierarchies need.
+layout(constant_id = 5) const uint STACK_DEPTH = 32u;
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };

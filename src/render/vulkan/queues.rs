@@ -47,9 +47,9 @@ const NAMES: Stages<&str> = Stages {
 pub struct Kernels(Stages<Kernel>);
 
 impl Kernels {
-    /// Compiles for the scene's way of fetching, its pages, and a traversal stack of `stack_depth` entries.
+    /// Compiles for the scene's way of fetching, its pages, and traversal stacks of `stack_depth` entries.
     pub fn new(context: &Context, scene: &SceneBuffers, stack_depth: u32) -> Result<Kernels, VulkanError> {
-        let mut constants = vec![(0, WORKGROUP), (5, stack_depth)];
+        let mut constants = vec![(0, WORKGROUP), (5, stack_depth.max(1))];
         constants.extend(scene.constants());
         let kernels = NAMES.try_map(|name| {
             let words = shaders::kernel(name, scene.fetch())
