@@ -122,7 +122,7 @@ Surface triangle_surface(Instance instance, Hit hit) {
 // barycentric weights or, on a sphere, pushed onto it, and does not inherit the error of t.
 Surface surface_at(Ray ray, Hit hit) {
     Instance instance = load_instance(hit.instance);
-    if (instance.kind == KIND_SPHERE) {
+    if (SCENE_HAS_SPHERES && instance.kind == KIND_SPHERE) {
         return sphere_surface(instance, ray, hit);
     }
     return triangle_surface(instance, hit);

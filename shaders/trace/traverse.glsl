@@ -144,7 +144,7 @@ Hit traverse(Ray ray, bool any) {
             vec3 origin = object_origin(record, ray.origin);
             if (!(any && (record.flags & INSTANCE_NO_SHADOW) != 0u) && within_reach(origin)) {
                 LevelRay level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
-                if (record.kind == KIND_SPHERE) {
+                if (SCENE_HAS_SPHERES && record.kind == KIND_SPHERE) {
                     test_sphere(ray, level, id, hit);
                 } else {
                     walk_mesh(ray, level, id, record.root, any, hit);
