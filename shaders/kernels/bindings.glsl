@@ -20,6 +20,9 @@ layout(constant_id = 4) const uint PAGE_SHIFT = 31u;
 layout(constant_id = 5) const uint STACK_DEPTH = 32u;
 // Choices of the scene, equal to what the Rust twins read in its header or data. Constants, so that a kernel is compiled
 // without the rest: devices that walk lanes in lockstep run both sides of every branch.
+// Bit n: a material of the scene has MODEL_* n. What no material has costs nothing: the driver cuts it away.
+layout(constant_id = 6) const uint MODELS_PRESENT = 0xffffffffu;
+#define HAS_MODEL(model) ((MODELS_PRESENT & (1u << (model))) != 0u)
 layout(constant_id = 7) const uint SCENE_INTEGRATOR = INTEGRATOR_LOCAL;
 layout(constant_id = 8) const uint SCENE_SAMPLING = SAMPLER_SOBOL;
 layout(constant_id = 9) const uint SCENE_FILTER = FILTER_BOX;

@@ -45,10 +45,12 @@ const NAMES: Stages<&str> = Stages {
 };
 
 /// Specialisation constants that say what the scene uses (`shaders/kernels/bindings.glsl`).
-fn scene_constants(data: &SceneData) -> [(u32, u32); 6] {
+fn scene_constants(data: &SceneData) -> [(u32, u32); 7] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
+    let models = data.materials.iter().fold(0, |mask, material| mask | 1 << material.model);
     [
         (5, data.stack_depth.max(1)),
+        (6, models),
         (7, data.header.integrator),
         (8, data.header.sampling),
         (9, data.header.filter_kind),
