@@ -20,6 +20,8 @@ const uint MATERIAL_CONDUCTOR = 2u;
 const uint MATERIAL_LAFORTUNE = 4u;
 // Material flag: Cook-Torrance's D as the 1982 paper prints it, four times the normalised one.
 const uint MATERIAL_D_1982 = 8u;
+// Material flag: the back does not emit.
+const uint MATERIAL_EMIT_ONE_SIDED = 1024u;
 
 // One material. 144 bytes. Colours are linear Rec. 709.
 struct Material {

@@ -45,7 +45,7 @@ void shade_local(PathState path, SampleKey key, Surface surface, Material materi
     vec3 wo = -path.ray.direction;
     Spectrum weight = path.throughput * own_weight(material);
     Spectrum ambient = spectrum_from_rgb(header.ambient) * ambient_material(material);
-    Spectrum own = weight * (ambient + spectrum_from_rgb(material.emission));
+    Spectrum own = weight * (ambient + emission_material(material));
     // A mirror or a glass covers the background like anything else.
     float alpha = path.coverage * (1.0 - material.k_t);
     uint dither = dither_hash(key, DITHER_SURFACE);

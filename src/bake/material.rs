@@ -3,7 +3,7 @@
 use super::BakeError;
 use crate::layout::{
     ATTENUATION_INVERSE_SQUARE, ATTENUATION_NONE, ATTENUATION_POLYNOMIAL, INVALID, LIGHT_DIRECTIONAL, LIGHT_POINT,
-    LIGHT_SPOT, Light, MAGNIFY_BILINEAR, MAGNIFY_NEAREST, MATERIAL_CONDUCTOR, MATERIAL_D_1982, MATERIAL_FILTERED,
+    LIGHT_SPOT, Light, MAGNIFY_BILINEAR, MAGNIFY_NEAREST, MATERIAL_CONDUCTOR, MATERIAL_D_1982, MATERIAL_EMIT_ONE_SIDED, MATERIAL_FILTERED,
     MATERIAL_LAFORTUNE, MODEL_BLINN_PHONG, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_LAMBERT,
     MODEL_MIRROR, MODEL_PHONG, Material, TEXEL_FLOAT, TEXEL_LINEAR8, TEXEL_SRGB8, Texture, WRAP_CLAMP, WRAP_MIRROR,
     WRAP_REPEAT,
@@ -27,6 +27,7 @@ pub fn bake_material(material: &scene::Material) -> Result<Material, BakeError> 
         emission: material.emission,
         ..Material::default()
     };
+    baked.flags |= if material.emission_two_sided { 0 } else { MATERIAL_EMIT_ONE_SIDED };
     let unfinished = || BakeError::Unfinished { name: material.name.clone() };
     match &material.model {
         Model::Lambert => baked.model = MODEL_LAMBERT,
@@ -82,13 +83,14 @@ pub fn bake_material(material: &scene::Material) -> Result<Material, BakeError> 
     Ok(baked)
 }
 
-/// Whether a surface of this material casts a shadow: what it says, or else all but transparent panes do.
-pub fn casts_shadow(material: &scene::Material) -> bool {
+/// Whether a surface of this material casts a shadow: what it says, or else all but transparent panes do. `traced`: by
+/// paths, which find the way through a pane themselves.
+pub fn casts_shadow(material: &scene::Material, traced: bool) -> bool {
     let pane = match material.transparency {
         Some(Transparency::Interpolated { k_t } | Transparency::Filtered { k_t, .. }) => k_t > 0.0,
         None => false,
     };
-    material.casts_shadow.unwrap_or(!pane)
+    material.casts_shadow.unwrap_or(traced || !pane)
 }
 
 /// `v` made unit in double precision; +z if it has no direction.

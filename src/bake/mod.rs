@@ -3,8 +3,11 @@
 //! Whatever reaches a pixel is computed in f64 with libm and rounded once, so that every machine bakes the same bits.
 //! Only the shape of the hierarchies may differ; it never decides what is hit.
 
+mod alias;
 mod bvh;
 pub mod data;
+mod emitter;
+mod environment;
 pub mod filter;
 mod geometry;
 mod instance;
@@ -32,6 +35,9 @@ pub enum BakeError {
     /// A model whose shading has not landed yet.
     #[error("material \"{name}\": its model cannot be drawn yet")]
     Unfinished { name: String },
+    /// More than a random number can tell apart.
+    #[error("{count} triangles and lights glow; at most {most} are possible under direct and path")]
+    Emitters { count: usize, most: usize },
     /// The eye is its own target, or the like.
     #[error("the camera {0}")]
     Camera(&'static str),

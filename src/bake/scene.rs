@@ -1,6 +1,7 @@
 //! The whole scene: numbers its parts, shares what is the same, and fills in the header.
 
 use super::bvh::{Bounds, TOP_LEAF, Tree};
+use super::emitter::{bake_emitters, bake_surroundings};
 use super::filter::filter_table;
 use super::geometry::{BakedMesh, bake_mesh};
 use super::instance::{place, top_margin};
@@ -8,7 +9,7 @@ use super::material::{bake_light, bake_material, bake_texture, casts_shadow, uni
 use super::srgb::srgb_table;
 use super::{BakeError, SceneData};
 use crate::layout::{
-    Camera, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH,
+    Camera, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH,
     KIND_SPHERE, SAMPLER_INDEPENDENT, SAMPLER_SOBOL, SAMPLER_STRATIFIED, STACK_SIZE, SceneHeader,
 };
 use crate::scene::{self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene};
@@ -34,6 +35,7 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     bake_tables(&scene.film.filter, &mut data);
     let mut parts = place_objects(scene, &meshes, default_material, &mut data)?;
     parts.meshes = meshes;
+    bake_light_sources(scene, &parts, &mut data)?;
     build_hierarchy(parts, &mut data)?;
     data.header.instance_count = data.instances.len() as u32;
     data.header.light_count = data.lights.len() as u32;
@@ -71,6 +73,25 @@ fn bake_tables(filter: &scene::Filter, data: &mut SceneData) {
     (h.filter_kind, h.filter_radius, h.filter_norm) = (filter.kind, filter.radius, filter.norm);
     h.filter_table = data.tables.len() as u32;
     data.tables.extend(filter.table);
+}
+
+/// The image around the scene and, for path tracing, everything that glows.
+fn bake_light_sources(scene: &Scene, parts: &Parts, data: &mut SceneData) -> Result<(), BakeError> {
+    let environment = bake_surroundings(scene, data);
+    if data.header.integrator != INTEGRATOR_PATH {
+        return Ok(());
+    }
+    if scene.ambient != Vec3::ZERO {
+        data.warnings.push("ambient light has no effect under path and direct: light comes from what glows".to_owned());
+    }
+    let world = parts.shown.iter().fold(Bounds::EMPTY, |all, &(_, own)| all.union(own));
+    let primitives = |instance: usize| {
+        let mesh = parts.shown[instance].0.and_then(|id| parts.meshes[id].as_ref());
+        let mut primitives: Vec<u32> = mesh.map_or(Vec::new(), |mesh| mesh.triangles.iter().map(|t| t.primitive).collect());
+        primitives.sort_unstable();
+        primitives
+    };
+    bake_emitters(environment, &primitives, world, data)
 }
 
 /// Bakes each mesh that an object uses, once.
@@ -156,7 +177,8 @@ fn place_objects(
 /// Whether an object casts shadows: what it says, else what its material says. Shadow rays know instances, not
 /// faces: a mesh of both kinds of faces casts with all of them, and says so.
 fn instance_shadow(scene: &Scene, object: &Object) -> (bool, Option<String>) {
-    let of = |id: MaterialId| casts_shadow(&scene.materials[id.0 as usize]);
+    let traced = matches!(scene.settings.integrator, Integrator::Direct | Integrator::Path);
+    let of = |id: MaterialId| casts_shadow(&scene.materials[id.0 as usize], traced);
     if let Some(casts) = object.casts_shadow {
         return (casts, None);
     }
@@ -239,16 +261,16 @@ fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
     if !(-100..=100).contains(&scene.film.unit_exponent) {
         return Err(BakeError::FilmUnit(scene.film.unit_exponent));
     }
+    let max_depth = if settings.integrator == Integrator::Direct { 1 } else { settings.max_depth };
     Ok(SceneHeader {
         camera: camera(&scene.camera, &scene.film)?,
         ambient: scene.ambient,
         integrator: match settings.integrator {
             Integrator::Local => INTEGRATOR_LOCAL,
             Integrator::Whitted => INTEGRATOR_WHITTED,
+            Integrator::Direct | Integrator::Path => INTEGRATOR_PATH,
         },
-        background_bottom: scene.background.bottom,
-        max_depth: settings.max_depth,
-        background_top: scene.background.top,
+        max_depth,
         min_weight: settings.min_weight,
         seed: settings.seed,
         sampling: match settings.sampler {
@@ -260,6 +282,9 @@ fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
         strata: if settings.sampler == Sampler::Stratified { strata(settings.samples) } else { 1 },
         shadows: u32::from(settings.shadows),
         film_scale: libm::ldexp(1.0, exponent) as f32,
+        rr_depth: settings.rr_depth,
+        clamp: settings.clamp.unwrap_or(0.0),
+        level_count: if settings.integrator == Integrator::Whitted { max_depth + 1 } else { 1 },
         ..SceneHeader::default()
     })
 }

@@ -21,6 +21,8 @@ pub const MATERIAL_CONDUCTOR: u32 = 2;
 pub const MATERIAL_LAFORTUNE: u32 = 4;
 /// Material flag: Cook-Torrance's D as the 1982 paper prints it, four times the normalised one.
 pub const MATERIAL_D_1982: u32 = 8;
+/// Material flag: the back does not emit.
+pub const MATERIAL_EMIT_ONE_SIDED: u32 = 1024;
 
 /// One material. 144 bytes. Colours are linear Rec. 709.
 #[repr(C)]

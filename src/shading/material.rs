@@ -89,6 +89,13 @@ pub fn mirror_weight(material: &Material, cos_o: f32) -> Spectrum {
     }
 }
 
+/// Radiance the surface sends out by itself, the same in every direction: its emission, and the colour of an emissive one.
+#[inline]
+pub fn emission_material(material: &Material) -> Spectrum {
+    let shown = if material.model == MODEL_EMISSIVE { material.color } else { Vec3::ZERO };
+    spectrum_from_rgb(material.emission + shown)
+}
+
 /// Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) for Cook-Torrance.
 #[inline]
 pub fn albedo_material(material: &Material) -> Spectrum {

@@ -19,6 +19,7 @@ pub mod blinn_phong;
 pub mod camera;
 pub mod cook_torrance;
 pub mod dielectric;
+pub mod environment;
 pub mod filter;
 pub mod frame;
 pub mod fresnel;

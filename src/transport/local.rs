@@ -6,7 +6,7 @@ use crate::layout::{
 };
 use crate::shading::frame::{Frame, frame_from_normal, to_local};
 use crate::shading::light::sample_light;
-use crate::shading::material::{ambient_material, eval_material};
+use crate::shading::material::{ambient_material, emission_material, eval_material};
 use crate::shading::math::{dot3, normalize3};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_max};
@@ -17,7 +17,7 @@ use glam::{Vec3, Vec4};
 /// Smallest cosine between shading normal and viewer; interpolated normals that face away are bent up to it.
 const COS_VIEW_MIN: f32 = 1.0e-3;
 /// A shadow ray ends this fraction short of its light, so that a lamp's own glass does not hide it.
-const SHADOW_END: f32 = 0.9999;
+pub const SHADOW_END: f32 = 0.9999;
 
 /// The shading normal a viewer at `wo` sees: on the viewer's side of the surface (both sides are shaded alike), and
 /// bent towards the viewer where interpolation has turned it away.
@@ -61,7 +61,7 @@ pub fn shade_local(
     let wo = -path.ray.direction;
     let weight = path.throughput * own_weight(material);
     let ambient = spectrum_from_rgb(scene.header.ambient) * ambient_material(material);
-    let own = weight * (ambient + spectrum_from_rgb(material.emission));
+    let own = weight * (ambient + emission_material(material));
     // A mirror or a glass covers the background like anything else.
     let alpha = path.coverage * (1.0 - material.k_t);
     let dither = dither_hash(key, DITHER_SURFACE);
