@@ -158,9 +158,9 @@ fn a_horizontal_field_of_view_becomes_a_vertical_one_by_the_frame() {
 fn each_model_reads_its_own_keys() {
     assert_eq!(material("color = \"red\"\nk_d = 0.5"), Material { color: Rgb::X, k_d: 0.5, ..Material::grey("m") });
     let phong = material("model = \"phong\"\nexponent = 8\nnormalisation = \"lafortune\"");
-    assert_eq!(phong.model, Model::Phong { exponent: 8.0, lafortune: true });
+    assert_eq!(phong.model, Model::Phong { exponent: 8.0, lafortune: Some(true) });
     assert_eq!((phong.k_d, phong.k_s), (0.7, 0.3));
-    assert_eq!(material("model = \"phong\"").model, Model::Phong { exponent: 32.0, lafortune: false });
+    assert_eq!(material("model = \"phong\"").model, Model::Phong { exponent: 32.0, lafortune: None });
     assert_eq!(material("model = \"blinn-phong\"\nexponent = 0").model, Model::BlinnPhong { exponent: 0.0 });
     assert_eq!(material("model = \"mirror\"").color, Rgb::splat(0.9));
     let water = material("model = \"dielectric\"\neta = \"water\"\nabsorption = [1, 2, 3]");
@@ -353,7 +353,7 @@ fn overrides_change_values_by_name_and_by_number() {
     ];
     let scene = read(&text, &overrides);
     assert_eq!(scene.settings.samples, 64);
-    assert_eq!(scene.materials[0].model, Model::Phong { exponent: 20.0, lafortune: false });
+    assert_eq!(scene.materials[0].model, Model::Phong { exponent: 20.0, lafortune: None });
     assert_eq!(scene.materials[0].color, Rgb::ONE);
     assert!(close(placed(&scene.objects[0], [0.0; 3]), [1.0, 2.0, 3.0]));
     assert_eq!(scene.lights[0].intensity, Rgb::splat(3.0));

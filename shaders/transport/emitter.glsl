@@ -29,7 +29,7 @@ Spectrum textured_radiance(Emitter emitter, vec3 position, vec2 u, LightSample l
     vec2 b = square_to_uniform_triangle(u);
     Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0u, 0u);
     Hit hit = Hit(lit.distance, b.x, b.y, emitter.instance, emitter.primitive, 0u, 0u, 0u);
-    return emission_material(material_at(surface_at(ray, hit)));
+    return spectrum_from_rgb(emission_material(material_at(surface_at(ray, hit))));
 }
 
 // Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1.
@@ -63,21 +63,12 @@ bool casts_shadow(Emitter emitter) {
     return emitter.kind != EMITTER_LIGHT || load_light(emitter.instance).casts_shadow != 0u;
 }
 
-// What the surface itself sends towards `wo` (unit, world).
-Spectrum emitted(Surface surface, Material material, vec3 wo) {
-    bool one_sided = (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0u;
-    if (one_sided && dot3(surface.normal_geometric, wo) < 0.0) {
-        return spectrum_zero();
-    }
-    return emission_material(material);
-}
-
 // Density per solid angle with which `sample_emitter`, its choice included, would have drawn the direction of a ray that
 // left `origin` and met a glowing surface at `t`.
 float pdf_emitter(vec3 origin, vec3 direction, float t, Surface surface) {
     Instance instance = load_instance(surface.instance);
     // Without textures: what bake made the choice by.
-    float luminance = spectrum_luminance(emission_material(load_material(surface.material)));
+    float luminance = spectrum_luminance(spectrum_from_rgb(emission_material(load_material(surface.material))));
     float density = instance.light_density * luminance;
     if (surface.kind == KIND_SPHERE) {
         vec3 along = transform_vector(instance.to_object, direction);

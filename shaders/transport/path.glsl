@@ -9,6 +9,7 @@
 #ifndef TRANSPORT_PATH_GLSL
 #define TRANSPORT_PATH_GLSL
 
+#include "shading/bsdf.glsl"
 #include "shading/environment.glsl"
 #include "shading/frame.glsl"
 #include "shading/material.glsl"
@@ -21,23 +22,6 @@
 #include "transport/local.glsl"
 #include "transport/mod.glsl"
 #include "transport/weight.glsl"
-
-const uint SAMPLE_DELTA = 1u;
-const uint SAMPLE_TRANSMIT = 2u;
-
-struct BsdfSample {
-    vec3 wi;
-    float pdf;
-    Spectrum weight;
-    float eta;
-    uint flags;
-};
-
-BsdfSample sample_bsdf(Material material, vec3 wo, vec2 u, float u_lobe) {
-    DirectionSample drawn = sample_material(material, wo, u, u_lobe);
-    Spectrum weight = eval_material(material, wo, drawn.wi) * rcp(drawn.pdf);
-    return BsdfSample(drawn.wi, drawn.pdf, weight, 1.0, 0u);
-}
 
 // A contribution of light that has been scattered, within the scene's limit; how often that bites is counted.
 Spectrum limited(uint depth, Spectrum value) {
@@ -105,7 +89,7 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
 void scatter(PathState path, SampleKey key, Surface surface, Material material, Frame frame, vec3 wo) {
     vec3 wo_local = to_local(frame, wo);
     float u_lobe = sample_1d(key, DIMENSION_LOBE);
-    BsdfSample bsdf = sample_bsdf(material, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
+    BsdfSample bsdf = sample_material(material, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
     vec3 wi = to_world(frame, bsdf.wi);
     if (bsdf.pdf <= 0.0 || !consistent(surface, wo, wi, wo_local, bsdf.wi)) {
         return;
@@ -162,7 +146,7 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Mat
     }
 
     vec3 wo = -direction;
-    Spectrum own_light = emitted(surface, material, wo);
+    Spectrum own_light = spectrum_from_rgb(emitted(surface, material, wo));
     bool glows = spectrum_max(own_light) > 0.0;
     if (glows || path.coverage != 0.0) {
         float weight = 1.0;
@@ -174,10 +158,10 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Mat
         vec4 contribution = vec4(seen.x, seen.y, seen.z, path.coverage);
         add_contribution(header.film_scale, path.slot, contribution, dither_hash(key, DITHER_SURFACE));
     }
-    if (path.depth >= header.max_depth) {
+    if (path.depth >= header.max_depth || is_hidden_back(surface, material, wo)) {
         return;
     }
-    Frame frame = frame_from_normal(facing_normal(surface, wo));
+    Frame frame = shading_frame(surface, material, wo);
     if (header.emitter_count > 0u && !is_delta(material)) {
         shade_emitter(path, key, surface, material, frame, wo);
     }

@@ -184,7 +184,7 @@ fn collect_instance(
                 instance: index as u32,
                 edge2: edge2.as_vec3(),
                 primitive,
-                normal: super::material::unit(outside),
+                normal: super::light::unit(outside),
                 density: 0.0,
                 radiance,
                 flags: flags(material, textured(material) || tinted),

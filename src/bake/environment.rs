@@ -80,7 +80,7 @@ fn push_cdf(table: &mut Vec<f32>, shares: impl Iterator<Item = f64> + Clone) {
 fn rotation(environment: &Environment) -> [Vec4; 3] {
     let matrix = environment.to_world.0.matrix3;
     // A rotation's inverse is its transpose: the columns, made unit.
-    [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| super::material::unit(axis).extend(0.0))
+    [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| super::light::unit(axis).extend(0.0))
 }
 
 /// Luminance of each texel times `scale`, from the top row down.

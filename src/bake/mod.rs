@@ -3,6 +3,7 @@
 //! Whatever reaches a pixel is computed in f64 with libm and rounded once, so that every machine bakes the same bits.
 //! Only the shape of the hierarchies may differ; it never decides what is hit.
 
+mod albedo;
 mod alias;
 mod bvh;
 pub mod data;
@@ -11,7 +12,8 @@ mod environment;
 pub mod filter;
 mod geometry;
 mod instance;
-mod material;
+mod light;
+mod model;
 mod scene;
 pub mod srgb;
 
@@ -38,6 +40,9 @@ pub enum BakeError {
     /// More than a random number can tell apart.
     #[error("{count} triangles and lights glow; at most {most} are possible under direct and path")]
     Emitters { count: usize, most: usize },
+    /// A blend of blends of blends.
+    #[error("material \"{name}\" blends more than 8 materials, or itself")]
+    Blend { name: String },
     /// The eye is its own target, or the like.
     #[error("the camera {0}")]
     Camera(&'static str),

@@ -5,7 +5,8 @@ use super::emitter::{bake_emitters, bake_surroundings};
 use super::filter::filter_table;
 use super::geometry::{BakedMesh, bake_mesh};
 use super::instance::{place, top_margin};
-use super::material::{bake_light, bake_material, bake_texture, casts_shadow, unit};
+use super::light::{bake_light, bake_texture, unit};
+use super::model::{bake_blends, bake_material, casts_shadow};
 use super::srgb::srgb_table;
 use super::{BakeError, SceneData};
 use crate::layout::{
@@ -24,6 +25,8 @@ const DEEP_PART: u32 = 12;
 /// Bakes a scene whose indices are valid (`scene::load` guarantees it).
 pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     let mut data = SceneData::default();
+    data.header = header(scene)?;
+    bake_tables(&scene.film.filter, &mut data);
     let default_material = bake_materials(scene, &mut data)?;
     data.lights = scene.lights.iter().map(bake_light).collect();
     for texture in &scene.textures {
@@ -31,8 +34,6 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     }
     check_count("words of texels", data.texels.len())?;
     let meshes = bake_meshes(scene, default_material);
-    data.header = header(scene)?;
-    bake_tables(&scene.film.filter, &mut data);
     let mut parts = place_objects(scene, &meshes, default_material, &mut data)?;
     parts.meshes = meshes;
     bake_light_sources(scene, &parts, &mut data)?;
@@ -49,10 +50,15 @@ fn check_count(what: &'static str, count: usize) -> Result<(), BakeError> {
     if count as u64 >= u64::from(INVALID) { Err(BakeError::TooLarge { what, count: count as u64 }) } else { Ok(()) }
 }
 
+/// Whether paths are traced.
+fn traced(scene: &Scene) -> bool {
+    matches!(scene.settings.integrator, Integrator::Direct | Integrator::Path)
+}
+
 /// Bakes all materials, and one more where an object or face names none. Returns the id of that one.
 fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, BakeError> {
     for material in &scene.materials {
-        data.materials.push(bake_material(material)?);
+        data.materials.push(bake_material(material, traced(scene), &mut data.tables)?);
     }
     let nameless = |object: &Object| match object.geometry {
         Geometry::Sphere => object.material.is_none(),
@@ -60,8 +66,10 @@ fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, Bak
     };
     let default = MaterialId(scene.materials.len() as u32);
     if scene.objects.iter().any(nameless) {
-        data.materials.push(bake_material(&Material::grey("default"))?);
+        data.materials.push(bake_material(&Material::grey("default"), traced(scene), &mut data.tables)?);
     }
+    bake_blends(&scene.materials, &mut data.materials)?;
+    check_count("table entries", data.tables.len())?;
     Ok(default)
 }
 
@@ -177,8 +185,7 @@ fn place_objects(
 /// Whether an object casts shadows: what it says, else what its material says. Shadow rays know instances, not
 /// faces: a mesh of both kinds of faces casts with all of them, and says so.
 fn instance_shadow(scene: &Scene, object: &Object) -> (bool, Option<String>) {
-    let traced = matches!(scene.settings.integrator, Integrator::Direct | Integrator::Path);
-    let of = |id: MaterialId| casts_shadow(&scene.materials[id.0 as usize], traced);
+    let of = |id: MaterialId| casts_shadow(&scene.materials[id.0 as usize], traced(scene));
     if let Some(casts) = object.casts_shadow {
         return (casts, None);
     }

@@ -6,14 +6,14 @@ use super::area_light::{
 use super::textured::material_at;
 use crate::layout::{
     EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_SPHERE, EMITTER_TEXTURED, Emitter, Hit, KIND_SPHERE,
-    MATERIAL_EMIT_ONE_SIDED, Material, Ray, SceneView, T_INFINITE, load_instance, load_light, load_material,
+    Ray, SceneView, T_INFINITE, load_instance, load_light, load_material,
     load_table,
 };
 use crate::shading::environment::sample_environment;
 use crate::shading::light::{LightSample, no_light, sample_light};
 use crate::shading::material::emission_material;
 use crate::shading::math::{dot3, rcp};
-use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_luminance, spectrum_zero};
+use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_luminance};
 use crate::shading::warp::square_to_uniform_triangle;
 use crate::trace::ray::{transform_point, transform_vector};
 use crate::trace::surface::{Surface, surface_at};
@@ -42,7 +42,7 @@ fn textured_radiance(scene: &SceneView, emitter: &Emitter, position: Vec3, u: Ve
         primitive: emitter.primitive,
         ..Hit::default()
     };
-    emission_material(&material_at(scene, &surface_at(scene, &ray, &hit)))
+    spectrum_from_rgb(emission_material(&material_at(scene, &surface_at(scene, &ray, &hit))))
 }
 
 /// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1.
@@ -76,21 +76,12 @@ pub fn casts_shadow(scene: &SceneView, emitter: &Emitter) -> bool {
     emitter.kind != EMITTER_LIGHT || load_light(scene, emitter.instance).casts_shadow != 0
 }
 
-/// What the surface itself sends towards `wo` (unit, world).
-pub fn emitted(surface: &Surface, material: &Material, wo: Vec3) -> Spectrum {
-    let one_sided = (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0;
-    if one_sided && dot3(surface.normal_geometric, wo) < 0.0 {
-        return spectrum_zero();
-    }
-    emission_material(material)
-}
-
 /// Density per solid angle with which `sample_emitter`, its choice included, would have drawn the direction of a ray that
 /// left `origin` and met a glowing surface at `t`.
 pub fn pdf_emitter(scene: &SceneView, origin: Vec3, direction: Vec3, t: f32, surface: &Surface) -> f32 {
     let instance = load_instance(scene, surface.instance);
     // Without textures: what bake made the choice by.
-    let luminance = spectrum_luminance(emission_material(&load_material(scene, surface.material)));
+    let luminance = spectrum_luminance(spectrum_from_rgb(emission_material(&load_material(scene, surface.material))));
     let density = instance.light_density * luminance;
     if surface.kind == KIND_SPHERE {
         let along = transform_vector(instance.to_object, direction);

@@ -7,8 +7,8 @@
 //! Panes (k_t, opacity) are a choice at random between the surface and what lies behind; passing is no scattering event.
 //! Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit.
 
-use super::emitter::{casts_shadow, choose_emitter, emitted, pdf_emitter, sample_emitter};
-use super::local::{SHADOW_END, facing_normal, own_weight};
+use super::emitter::{casts_shadow, choose_emitter, pdf_emitter, sample_emitter};
+use super::local::{SHADOW_END, emitted, is_hidden_back, own_weight, shading_frame};
 use super::weight::{consistent, power_heuristic, survival};
 use super::{
     DIMENSION_BSDF, DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, DIMENSION_LOBE, DIMENSION_PANE, DIMENSION_ROULETTE,
@@ -18,8 +18,9 @@ use super::{
 use crate::layout::{
     EMITTER_LIGHT, Hit, MATERIAL_FILTERED, Material, PathState, SceneView, ShadowRay, T_INFINITE, load_emitter,
 };
+use crate::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
 use crate::shading::environment::{background, pdf_environment};
-use crate::shading::frame::{Frame, frame_from_normal, to_local, to_world};
+use crate::shading::frame::{Frame, to_local, to_world};
 use crate::shading::material::{eval_material, is_delta, pdf_material, sample_material};
 use crate::shading::math::{div, rcp};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, sample_1d, sample_2d};
@@ -27,23 +28,6 @@ use crate::shading::spectrum::{Spectrum, spectrum_flush, spectrum_from_rgb, spec
 use crate::trace::spawn::{spawn_ray, spawn_through};
 use crate::trace::surface::Surface;
 use glam::{Vec2, Vec3, Vec4};
-
-const SAMPLE_DELTA: u32 = 1;
-const SAMPLE_TRANSMIT: u32 = 2;
-
-struct BsdfSample {
-    wi: Vec3,
-    pdf: f32,
-    weight: Spectrum,
-    eta: f32,
-    flags: u32,
-}
-
-fn sample_bsdf(material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> BsdfSample {
-    let drawn = sample_material(material, wo, u, u_lobe);
-    let weight = eval_material(material, wo, drawn.wi) * rcp(drawn.pdf);
-    BsdfSample { wi: drawn.wi, pdf: drawn.pdf, weight, eta: 1.0, flags: 0 }
-}
 
 /// A contribution of light that has been scattered, within the scene's limit; how often that bites is counted.
 pub fn limited(scene: &SceneView, depth: u32, value: Spectrum, queues: &mut Queues) -> Spectrum {
@@ -97,13 +81,13 @@ fn shade_emitter(
     if spectrum_max(lit.radiance) <= 0.0 || !consistent(surface, wo, lit.wi, wo_local, wi_local) {
         return;
     }
-    let reflected = path.throughput * eval_material(material, wo_local, wi_local) * lit.radiance;
+    let reflected = path.throughput * eval_material(scene, material, wo_local, wi_local) * lit.radiance;
     if spectrum_max(reflected) <= 0.0 {
         return;
     }
     let mut weight = 1.0;
     if lit.pdf_solid_angle > 0.0 {
-        weight = power_heuristic(lit.pdf_solid_angle, pdf_material(material, wo_local, wi_local));
+        weight = power_heuristic(lit.pdf_solid_angle, pdf_material(scene, material, wo_local, wi_local));
     }
     let seen = limited(scene, path.depth + 1, reflected * weight, queues);
     let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
@@ -129,7 +113,7 @@ fn scatter(
 ) {
     let wo_local = to_local(frame, wo);
     let u_lobe = sample_1d(key, DIMENSION_LOBE);
-    let bsdf = sample_bsdf(material, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
+    let bsdf = sample_material(scene, material, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
     let wi = to_world(frame, bsdf.wi);
     if bsdf.pdf <= 0.0 || !consistent(surface, wo, wi, wo_local, bsdf.wi) {
         return;
@@ -194,7 +178,7 @@ pub fn shade_path(
     }
 
     let wo = -direction;
-    let own_light = emitted(surface, material, wo);
+    let own_light = spectrum_from_rgb(emitted(surface, material, wo));
     let glows = spectrum_max(own_light) > 0.0;
     if glows || path.coverage != 0.0 {
         let mut weight = 1.0;
@@ -206,10 +190,10 @@ pub fn shade_path(
         let contribution = Vec4::new(seen.x, seen.y, seen.z, path.coverage);
         add_contribution(queues, scene.header.film_scale, path.slot, contribution, dither_hash(key, DITHER_SURFACE));
     }
-    if path.depth >= scene.header.max_depth {
+    if path.depth >= scene.header.max_depth || is_hidden_back(surface, material, wo) {
         return;
     }
-    let frame = frame_from_normal(facing_normal(surface, wo));
+    let frame = shading_frame(scene, surface, material, wo);
     if scene.header.emitter_count > 0 && !is_delta(material) {
         shade_emitter(scene, &path, key, surface, material, frame, wo, queues);
     }
