@@ -12,7 +12,7 @@ mod material;
 mod scene;
 pub mod srgb;
 
-pub use data::{HeapPiece, SceneData};
+pub use data::{BakeTimes, HeapPiece, SceneData};
 pub use scene::bake;
 
 /// Why a scene cannot be baked: exit code 65.
