@@ -4,6 +4,7 @@
 //! scene file -> `scene` -> `bake` -> `render` (schedules `transport`) -> `film` -> image, report.
 
 pub mod bake;
+pub mod bench;
 pub mod cli;
 pub mod film;
 pub mod layout;

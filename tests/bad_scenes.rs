@@ -307,7 +307,7 @@ fn shapes_that_have_no_surface_are_refused() {
     let cases: &[(&str, &str)] = &[
         (
             "shape = \"cube\"",
-            "a.toml:4:9: \"shape\" must be \"sphere\", \"quad\", \"box\", \"disk\", \"cylinder\", \"cone\", \"torus\", \"lathe\", \"teapot\", \"heightfield\" or \"mesh\", found \"cube\"",
+            "a.toml:4:9: \"shape\" must be \"sphere\", \"quad\", \"box\", \"disk\", \"cylinder\", \"cone\", \"torus\", \"lathe\", \"teapot\", \"heightfield\", \"terrain\", \"hairball\", \"sphereflake\", \"teapots\" or \"mesh\", found \"cube\"",
         ),
         (
             "shape = \"quad\"\nsize = [1, 2, 3]",

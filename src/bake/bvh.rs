@@ -11,6 +11,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::ploc::PlocBuilder;
+use std::time::Instant;
 
 /// Primitives in a leaf of a mesh; the node format has room for three.
 pub const MESH_LEAF: u32 = 3;
@@ -90,6 +91,8 @@ pub struct Tree {
     nodes: Vec<TreeNode>,
     /// Which primitive stands at each place of the traversal order.
     pub order: Vec<u32>,
+    /// Seconds that its binary tree and the conversion took.
+    pub seconds: [f64; 2],
 }
 
 impl Tree {
@@ -107,6 +110,7 @@ impl Tree {
     fn by_surface_area(boxes: &[Bounds], leaf: u32) -> Self {
         let boxes: Vec<Aabb> = boxes.iter().map(|b| Aabb::new(b.min.into(), b.max.into())).collect();
         let preset = BvhBuildParams::medium_build();
+        let start = Instant::now();
         // The steps of obvhs's `build_cwbvh` but for its debug validation, which panics on deep trees.
         let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
             preset.ploc_search_distance,
@@ -116,6 +120,7 @@ impl Tree {
             preset.search_depth_threshold,
         );
         ReinsertionOptimizer::default().run(&mut binary, preset.reinsertion_batch_ratio, None);
+        let binary_s = start.elapsed().as_secs_f64();
         let wide = bvh2_to_cwbvh(&binary, leaf, true, false);
         let nodes = wide
             .nodes
@@ -127,13 +132,15 @@ impl Tree {
                 meta: n.child_meta,
             })
             .collect();
-        Self { nodes, order: wide.primitive_indices }
+        let wide_s = start.elapsed().as_secs_f64() - binary_s;
+        Self { nodes, order: wide.primitive_indices, seconds: [binary_s, wide_s] }
     }
 
     /// A tree of the least depth: each node halves its largest part, by the median along its longest axis, until it
     /// has eight.
     fn median_split(boxes: &[Bounds], leaf: u32) -> Self {
-        let mut tree = Self { nodes: vec![TreeNode::default()], order: Vec::with_capacity(boxes.len()) };
+        let mut tree =
+            Self { nodes: vec![TreeNode::default()], order: Vec::with_capacity(boxes.len()), seconds: [0.0; 2] };
         let mut waiting = vec![(0usize, (0..boxes.len() as u32).collect::<Vec<u32>>())];
         while let Some((index, primitives)) = waiting.pop() {
             let mut parts = vec![primitives];

@@ -17,7 +17,7 @@ mod model;
 mod scene;
 pub mod srgb;
 
-pub use data::{HeapPiece, SceneData};
+pub use data::{BakeTimes, HeapPiece, SceneData};
 pub use scene::bake;
 
 /// Why a scene cannot be baked: exit code 65.

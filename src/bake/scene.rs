@@ -16,12 +16,14 @@ use crate::layout::{
 use crate::scene::{self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use std::time::Instant;
 
 /// k of the film's fixed point (DESIGN, strict rule 8): 2^-22 of a film unit is the smallest step.
 const FILM_BITS: i32 = 22;
 
 /// Bakes a scene whose indices are valid (`scene::load` guarantees it).
 pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
+    let start = Instant::now();
     let mut data = SceneData::default();
     data.header = header(scene)?;
     bake_tables(&scene.film.filter, &mut data);
@@ -31,15 +33,24 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
         data.textures.push(bake_texture(texture, &mut data.texels));
     }
     check_count("words of texels", data.texels.len())?;
+    data.times.materials_s = start.elapsed().as_secs_f64();
     let meshes = bake_meshes(scene, default_material);
+    for mesh in meshes.iter().flatten() {
+        data.times.geometry_s += mesh.geometry_s;
+        data.times.binary_s += mesh.tree.seconds[0];
+        data.times.wide_s += mesh.tree.seconds[1];
+    }
+    let placing = Instant::now();
     let mut parts = place_objects(scene, &meshes, default_material, &mut data)?;
     parts.meshes = meshes;
     bake_light_sources(scene, &parts, &mut data)?;
+    data.times.top_s = placing.elapsed().as_secs_f64();
     build_hierarchy(parts, &mut data)?;
     data.header.instance_count = data.instances.len() as u32;
     data.header.light_count = data.lights.len() as u32;
     data.header.material_count = data.materials.len() as u32;
     data.place_heap()?;
+    data.times.whole_s = start.elapsed().as_secs_f64();
     Ok(data)
 }
 
@@ -213,13 +224,16 @@ fn build_hierarchy(parts: Parts, data: &mut SceneData) -> Result<(), BakeError> 
         return Ok(());
     }
     let boxes: Vec<Bounds> = parts.shown.iter().map(|&(_, world)| world).collect();
+    let start = Instant::now();
     let top = Tree::build(&boxes, TOP_LEAF);
     let meshes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.stack_depth());
     data.stack_depth = meshes.fold(top.stack_depth(), u32::max);
     if data.stack_depth > STACK_SIZE {
         return Err(BakeError::Deep(data.stack_depth));
     }
+    data.times.top_s += start.elapsed().as_secs_f64();
 
+    let start = Instant::now();
     let triangles = parts.meshes.iter().flatten().map(|mesh| mesh.triangles.len()).sum();
     check_count("triangles", triangles)?;
     let nodes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.node_count()).sum::<usize>() + top.node_count();
@@ -242,6 +256,7 @@ fn build_hierarchy(parts: Parts, data: &mut SceneData) -> Result<(), BakeError> 
     for (instance, (mesh, _)) in data.instances.iter_mut().zip(&parts.shown) {
         instance.root = mesh.map_or(INVALID, |id| roots[id]);
     }
+    data.times.pack_s = start.elapsed().as_secs_f64();
     Ok(())
 }
 

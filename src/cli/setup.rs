@@ -77,6 +77,17 @@ pub enum IntegratorName {
     Path,
 }
 
+impl From<IntegratorName> for Integrator {
+    fn from(name: IntegratorName) -> Self {
+        match name {
+            IntegratorName::Local => Self::Local,
+            IntegratorName::Whitted => Self::Whitted,
+            IntegratorName::Direct => Self::Direct,
+            IntegratorName::Path => Self::Path,
+        }
+    }
+}
+
 /// The scene and what of it the command line changes.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Scene")]
@@ -116,13 +127,7 @@ impl SceneFlags {
         settings.samples = self.spp.unwrap_or(settings.samples);
         settings.seed = self.seed.unwrap_or(settings.seed);
         settings.max_depth = self.max_depth.unwrap_or(settings.max_depth);
-        match self.integrator {
-            Some(IntegratorName::Local) => settings.integrator = Integrator::Local,
-            Some(IntegratorName::Whitted) => settings.integrator = Integrator::Whitted,
-            Some(IntegratorName::Direct) => settings.integrator = Integrator::Direct,
-            Some(IntegratorName::Path) => settings.integrator = Integrator::Path,
-            None => {}
-        }
+        settings.integrator = self.integrator.map_or(settings.integrator, Integrator::from);
         for warning in &scene.warnings {
             log::warn!("{warning}");
         }
@@ -221,7 +226,8 @@ impl BackendFlags {
         Ok(Box::new(renderer))
     }
 
-    fn vulkan_options(&self) -> VulkanOptions {
+    /// What the flags say of a Vulkan device.
+    pub fn vulkan_options(&self) -> VulkanOptions {
         VulkanOptions { device: self.device.clone(), fetch: self.fetch.into(), ..VulkanOptions::default() }
     }
 }

@@ -1,6 +1,7 @@
 //! Scene files: one file or folder per format.
 
 mod bounds;
+pub mod builtin;
 pub mod gltf;
 pub mod image;
 mod meter;
@@ -22,7 +23,7 @@ use std::path::Path;
 const STDIN_MAX: u64 = 64 << 20;
 
 /// Loads the scene in `path`, its format told by the extension: `.toml`, `.obj`, `.gltf`, `.glb`, `.ply`; `-` is TOML on
-/// standard input. What the scene lacks to be a picture (a mesh has no camera) is staged.
+/// standard input, and `NAME:SIZE` may be a built-in scene (`builtin`). What the scene lacks to be a picture (a mesh has no camera) is staged.
 pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
     if path == Path::new("-") {
         let name = Path::new("<stdin>");
@@ -34,6 +35,12 @@ pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
             return Err(SceneError::bad(Location::file(name), message));
         }
         return toml::scene_from_text(name, text::utf8(name, bytes)?, overrides);
+    }
+    if let Some(scene) = builtin::load(path) {
+        let mut scene = scene?;
+        toml::override_film(&mut scene, overrides)?;
+        toml::override_settings(&mut scene, overrides)?;
+        return Ok(scene);
     }
     if extension(path) == "toml" {
         return toml::scene_from_text(path, text::utf8(path, text::read_bytes(path)?)?, overrides);

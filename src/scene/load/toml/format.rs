@@ -282,6 +282,8 @@ pub static OBJECT: Section = Section {
         key("crease", Kind::Number(Range::new(0.0, 180.0)), "45", "Edges of a polyline or of smooth normals stay sharp above this angle, degrees").only(&["lathe", "mesh"]),
         key("segments", Kind::Integer { min: 1, max: 4096 }, "quad and box 1, teapot 8, heightfield 128, others 64; a sphere without it is analytic", "Around the axis (from 3), along each side, along each side of a teapot's patches (to 128), or cells of a heightfield from noise").only(&["sphere", "quad", "box", "disk", "cylinder", "cone", "torus", "lathe", "teapot", "heightfield"]),
         key("noise", Kind::Special("a table"), "all defaults", "The landscape of a heightfield without `file`; its keys are below").only(&["heightfield"]),
+        key("triangles", Kind::Integer { min: 1, max: u32::MAX as i64 }, "200000", "About how many: of a terrain from 2 and to 33554432, of a hairball to 33554432, of a field of teapots all together to 4160749568").only(&["terrain", "hairball", "teapots"]),
+        key("level", Kind::Integer { min: 0, max: 7 }, "4", "How often spheres carry nine smaller ones: (9^(level + 1) - 1) / 8 analytic spheres").only(&["sphereflake"]),
         key("file", Kind::Text, "required for a mesh", "mesh: OBJ, PLY, glTF or GLB; heightfield: an image, white is high; relative to the scene file").only(&["mesh", "heightfield"]),
         key("normals", Kind::Choice(&["file", "flat", "smooth"]), "`\"file\"`", "The file's own normals, none, or the mean of the faces around each vertex").only(&["mesh"]),
     ],
@@ -298,8 +300,23 @@ pub static NOISE: Section = Section {
     ],
 };
 
-pub const SHAPES: &[&str] =
-    &["sphere", "quad", "box", "disk", "cylinder", "cone", "torus", "lathe", "teapot", "heightfield", "mesh"];
+pub const SHAPES: &[&str] = &[
+    "sphere",
+    "quad",
+    "box",
+    "disk",
+    "cylinder",
+    "cone",
+    "torus",
+    "lathe",
+    "teapot",
+    "heightfield",
+    "terrain",
+    "hairball",
+    "sphereflake",
+    "teapots",
+    "mesh",
+];
 
 pub static STEP: Section =
     Section { name: "transform = [{ … }]", noun: "a transform step", keys: &[SCALE, ROTATE, TRANSLATE, MATRIX] };

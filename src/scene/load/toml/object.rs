@@ -4,10 +4,11 @@ use super::format::OBJECT;
 use super::names::Names;
 use super::place::{check, read_copies, read_place};
 use super::reader::{Reader, Result};
-use super::shapes::{SHAPE_KINDS, ShapeKind, crease, tessellate};
+use super::shapes::{SHAPE_KINDS, ShapeKind, crease, tessellate, triangles};
 use super::texture::{beside, refer};
+use crate::scene::load::builtin::{Builtin, DEFAULT_LEVEL, TEAPOT_STEPS, teapot_count};
 use crate::scene::load::load_file;
-use crate::scene::shape::compute_smooth_normals;
+use crate::scene::shape::{self, compute_smooth_normals};
 use crate::scene::{Geometry, Material, MaterialId, Mesh, MeshId, Model, Object, Scene, Transform};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -34,6 +35,11 @@ struct Piece {
     geometry: Geometry,
     transform: Transform,
     material: Option<MaterialId>,
+}
+
+/// One geometry in many places.
+fn many(geometry: Geometry, places: Vec<Transform>) -> Vec<Piece> {
+    places.into_iter().map(|transform| Piece { name: String::new(), geometry, transform, material: None }).collect()
 }
 
 /// How normals of a file are treated.
@@ -68,6 +74,14 @@ impl Objects<'_> {
         let casts_shadow = table.boolean("casts_shadow")?;
         let pieces = match (kind, tessellate(table, kind)?) {
             (ShapeKind::Mesh, _) => self.read_file(table)?,
+            (ShapeKind::Sphereflake, _) => {
+                let level = table.integer("level")?.unwrap_or(DEFAULT_LEVEL as u32);
+                many(Geometry::Sphere, shape::sphereflake(level))
+            }
+            (ShapeKind::Teapots, _) => {
+                let field = shape::teapot_field(teapot_count(triangles(table, Builtin::Teapots)?));
+                many(self.add_mesh(shape::teapot(TEAPOT_STEPS)).geometry, field)
+            }
             (_, Some(mesh)) => vec![self.add_mesh(mesh)],
             (_, None) => {
                 let radius = table.number("radius")?.unwrap_or(1.0);
