@@ -114,7 +114,7 @@ fn render_film_and_background_keys_arrive() {
     let text = format!(
         "[render]\nintegrator = \"local\"\nsamples = 9\nseed = 4294967295\nsampler = \"stratified\"\nmax_depth = 3\n\
          min_weight = 0.5\nshadows = false\nambient = [0.1, 0.2, 0.3]\n\
-         [film]\nsize = [3, 2]\nfilter = {{ type = \"gaussian\", radius = 2.5 }}\nunit = 0.25\ntonemap = \"reinhard\"\nexposure = -1\n\
+         [film]\nsize = [3, 2]\nfilter = {{ type = \"gaussian\", radius = 2.5 }}\nunit = 0.25\ntonemap = \"reinhard\"\nexposure = -1\ngamma = 2.2\n\
          [background]\nbottom = 0.5\ntop = \"white\"\n{LEAST}"
     );
     let scene = read(&text, &[]);
@@ -135,6 +135,7 @@ fn render_film_and_background_keys_arrive() {
         unit_exponent: -2,
         tonemap: ToneMap::Reinhard,
         exposure: -1.0,
+        gamma: Some(2.2),
     };
     assert_eq!(scene.film, film);
     assert_eq!(scene.ambient, Rgb::new(0.1, 0.2, 0.3));

@@ -28,6 +28,10 @@ pub enum Filter {
     Tent { radius: f32 },
     Gaussian { radius: f32, sigma: f32 },
     Mitchell { radius: f32, b: f32, c: f32 },
+    /// The four-term window (Harris 1978).
+    BlackmanHarris { radius: f32 },
+    /// sinc(x) sinc(x / radius), x in pixels.
+    Lanczos { radius: f32 },
 }
 
 /// The image plane.
@@ -43,6 +47,8 @@ pub struct Film {
     pub tonemap: ToneMap,
     /// In stops.
     pub exposure: f32,
+    /// Display encoding is light to the power 1/gamma; none: sRGB.
+    pub gamma: Option<f32>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,6 +59,10 @@ pub enum ToneMap {
     Normalise,
     /// L / (1 + L) on luminance (Reinhard et al. 2002, equation 3).
     Reinhard,
+    /// ACES 1.0 as fitted by Hill 2016.
+    Aces,
+    /// Sobotka 2022.
+    Agx,
 }
 
 /// What a ray that leaves the scene sees: a vertical gradient, flat if both are equal.

@@ -121,6 +121,7 @@ pub fn empty_scene() -> Scene {
             unit_exponent: 0,
             tonemap: ToneMap::Clamp,
             exposure: 0.0,
+            gamma: None,
         },
         settings: RenderSettings {
             integrator: Integrator::Whitted,

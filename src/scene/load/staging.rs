@@ -40,6 +40,7 @@ pub fn bare_scene(path: &Path) -> Scene {
             unit_exponent: 0,
             tonemap: ToneMap::Clamp,
             exposure: 0.0,
+            gamma: None,
         },
         settings: RenderSettings {
             integrator: Integrator::Whitted,
