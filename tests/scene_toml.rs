@@ -99,6 +99,7 @@ fn a_scene_without_settings_has_the_documented_defaults() {
         max_depth: 8,
         min_weight: 0.003,
         shadows: true,
+        shading: Shading::Phong,
     };
     assert_eq!(scene.settings, settings);
     assert_eq!((scene.ambient, scene.background), (Rgb::ZERO, Background { bottom: Rgb::ZERO, top: Rgb::ZERO }));
@@ -113,9 +114,9 @@ fn a_scene_without_settings_has_the_documented_defaults() {
 fn render_film_and_background_keys_arrive() {
     let text = format!(
         "[render]\nintegrator = \"local\"\nsamples = 9\nseed = 4294967295\nsampler = \"stratified\"\nmax_depth = 3\n\
-         min_weight = 0.5\nshadows = false\nambient = [0.1, 0.2, 0.3]\n\
+         min_weight = 0.5\nshadows = false\nshading = \"gouraud\"\nambient = [0.1, 0.2, 0.3]\n\
          [film]\nsize = [3, 2]\nfilter = {{ type = \"gaussian\", radius = 2.5 }}\nunit = 0.25\ntonemap = \"reinhard\"\nexposure = -1\ngamma = 2.2\n\
-         [background]\nbottom = 0.5\ntop = \"white\"\n{LEAST}"
+         [background]\nbottom = 0.5\ntop = \"white\"\n{LEAST}segments = 8\nshading = \"flat\"\n"
     );
     let scene = read(&text, &[]);
     let settings = RenderSettings {
@@ -126,8 +127,10 @@ fn render_film_and_background_keys_arrive() {
         max_depth: 3,
         min_weight: 0.5,
         shadows: false,
+        shading: Shading::Gouraud,
     };
     assert_eq!(scene.settings, settings);
+    assert_eq!(scene.objects[0].shading, Some(Shading::Flat));
     let film = Film {
         width: 3,
         height: 2,

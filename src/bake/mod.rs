@@ -29,6 +29,11 @@ pub enum BakeError {
     /// Cook-Torrance has one or two lobes.
     #[error("material \"{name}\" has {count} lobes; one or two are possible")]
     Lobes { name: String, count: usize },
+    /// Flat or Gouraud shading of what has no triangles.
+    #[error(
+        "object \"{name}\" is an analytic sphere: it has no triangles to shade flat or by Gouraud's method; a sphere of a TOML scene gets them from \"segments\""
+    )]
+    Faceted { name: String },
     /// The eye is its own target, or the like.
     #[error("the camera {0}")]
     Camera(&'static str),

@@ -14,8 +14,8 @@
 //!
 //! Nothing follows. A reader of version 1 refuses any other.
 
-use super::tone::{tonemap_from_name, tonemap_name};
 use super::sums::{AovSums, Film, FilmSpec, SUM_BITS};
+use super::tone::{tonemap_from_name, tonemap_name};
 use super::{FilmError, MAX_SAMPLES, Rect, SampleRanges};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};

@@ -48,12 +48,7 @@ pub struct FilmSpec {
 impl FilmSpec {
     /// How the picture is displayed.
     pub fn display(&self) -> Display {
-        Display {
-            tonemap: self.tonemap,
-            exposure: self.exposure,
-            gamma: self.gamma,
-            transparent: self.transparent,
-        }
+        Display { tonemap: self.tonemap, exposure: self.exposure, gamma: self.gamma, transparent: self.transparent }
     }
 }
 

@@ -18,7 +18,7 @@ pub use error::{Location, SceneError};
 pub use light::{Attenuation, IntensityUnit, Light, LightKind};
 pub use material::{Fresnel, Lobe, Material, Model, Transparency};
 pub use mesh::Mesh;
-pub use settings::{Background, Film, Filter, Integrator, RenderSettings, Sampler, ToneMap};
+pub use settings::{Background, Film, Filter, Integrator, RenderSettings, Sampler, Shading, ToneMap};
 pub use texture::{Texture, TextureData, Wrap};
 pub use transform::Transform;
 
@@ -75,4 +75,6 @@ pub struct Object {
     pub material: Option<MaterialId>,
     /// Overrides the material's own answer.
     pub casts_shadow: Option<bool>,
+    /// Overrides the scene's.
+    pub shading: Option<Shading>,
 }

@@ -24,14 +24,41 @@ pub enum Sampler {
 /// Reconstruction filter; radii in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filter {
-    Box { radius: f32 },
-    Tent { radius: f32 },
-    Gaussian { radius: f32, sigma: f32 },
-    Mitchell { radius: f32, b: f32, c: f32 },
+    Box {
+        radius: f32,
+    },
+    Tent {
+        radius: f32,
+    },
+    Gaussian {
+        radius: f32,
+        sigma: f32,
+    },
+    Mitchell {
+        radius: f32,
+        b: f32,
+        c: f32,
+    },
     /// The four-term window (Harris 1978).
-    BlackmanHarris { radius: f32 },
+    BlackmanHarris {
+        radius: f32,
+    },
     /// sinc(x) sinc(x / radius), x in pixels.
-    Lanczos { radius: f32 },
+    Lanczos {
+        radius: f32,
+    },
+}
+
+/// How the triangles of a mesh are shaded under `local` (row 8).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shading {
+    /// One evaluation a triangle, at its centroid with its own normal.
+    Flat,
+    /// One evaluation a corner, with its normal; the radiance is interpolated (Gouraud 1971).
+    Gouraud,
+    /// One evaluation a sample, with the interpolated normal (Phong 1975).
+    #[default]
+    Phong,
 }
 
 /// The image plane.
@@ -86,4 +113,6 @@ pub struct RenderSettings {
     /// Branches whose largest weight falls below this are cut (whitted).
     pub min_weight: f32,
     pub shadows: bool,
+    /// Of objects that do not say otherwise; `local` only.
+    pub shading: Shading,
 }

@@ -1,10 +1,13 @@
 //! What becomes of a ray once its hit is known.
 
+use super::faceted::{faceted, shading_point, shading_points};
 use super::generate::sample_key;
-use super::local::shade_local;
+use super::local::{shade_local, shade_through};
 use super::whitted::shade_whitted;
 use super::{DITHER_BACKGROUND, Queues, add_aov, add_contribution};
-use crate::layout::{Hit, INTEGRATOR_WHITTED, INVALID, Material, PathState, SceneView, load_material, load_texture};
+use crate::layout::{
+    Hit, INTEGRATOR_WHITTED, INVALID, Material, PathState, SceneView, load_instance, load_material, load_texture,
+};
 use crate::shading::dielectric::transmittance;
 use crate::shading::material::albedo_material;
 use crate::shading::math::mix_;
@@ -68,7 +71,13 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
         add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
     }
-    shade_local(scene, &path, key, &surface, &material, queues);
+    let flags = load_instance(scene, hit.instance).flags;
+    for index in 0..shading_points(flags) {
+        let point = shading_point(scene, &path.ray, hit, &surface, flags, index);
+        let material_there = if faceted(flags) { material_at(scene, &point.surface) } else { material };
+        shade_local(scene, &path, key, &point, &material_there, queues);
+    }
+    shade_through(scene, &path, &surface, &material, queues);
     if scene.header.integrator == INTEGRATOR_WHITTED && path.depth < scene.header.max_depth {
         shade_whitted(scene, &path, &surface, &material, queues);
     }

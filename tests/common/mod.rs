@@ -98,7 +98,14 @@ pub fn globe(rows: u32) -> Mesh {
 }
 
 pub fn object(geometry: Geometry, transform: Transform) -> Object {
-    Object { name: "object".into(), geometry, transform, material: Some(MaterialId(0)), casts_shadow: None }
+    Object {
+        name: "object".into(),
+        geometry,
+        transform,
+        material: Some(MaterialId(0)),
+        casts_shadow: None,
+        shading: None,
+    }
 }
 
 /// Each mesh once, where it is.
@@ -131,6 +138,7 @@ pub fn empty_scene() -> Scene {
             max_depth: 4,
             min_weight: 0.001,
             shadows: true,
+            shading: Shading::Phong,
         },
         camera: Camera {
             eye: Vec3::new(0.0, 0.0, 5.0),

@@ -209,8 +209,20 @@ fn merge_adds_films_converts_them_and_names_what_does_not_fit() {
     let mut expected = film.clone();
     expected.merge(&second).unwrap();
     assert_eq!(read_film(Path::new(&path("ab.gfilm"))).unwrap().hash(), expected.hash());
-    run(&[&path("ab.gfilm"), "-o", &path("ab.png"), "--bits", "16", "--exposure", "-1.5", "--tonemap", "reinhard", "--gamma", "2.2"])
-        .unwrap();
+    run(&[
+        &path("ab.gfilm"),
+        "-o",
+        &path("ab.png"),
+        "--bits",
+        "16",
+        "--exposure",
+        "-1.5",
+        "--tonemap",
+        "reinhard",
+        "--gamma",
+        "2.2",
+    ])
+    .unwrap();
     expected.set_display(gonio::scene::ToneMap::Reinhard, -1.5, Some(2.2));
     assert_eq!(fs::read(path("ab.png")).unwrap(), encode(&expected, Format::Png, true));
 

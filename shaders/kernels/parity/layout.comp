@@ -127,6 +127,8 @@ void store_constants() {
     constants[52] = MAGNIFY_BILINEAR;
     constants[53] = TEXTURE_WORDS;
     constants[54] = STACK_SIZE;
+    constants[55] = INSTANCE_FLAT;
+    constants[56] = INSTANCE_GOURAUD;
 }
 
 void main() {

@@ -7,7 +7,7 @@
 use super::bounds::{Bounds, free_distance};
 use crate::scene::{
     Attenuation, Background, Camera, Film, Filter, Geometry, Integrator, IntensityUnit, Light, LightKind, Material,
-    MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, ToneMap, Transform, shape,
+    MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, Shading, ToneMap, Transform, shape,
 };
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
@@ -50,6 +50,7 @@ pub fn bare_scene(path: &Path) -> Scene {
             max_depth: 8,
             min_weight: 0.003,
             shadows: true,
+            shading: Shading::Phong,
         },
         camera: NO_CAMERA,
         background: Background { bottom: Rgb::ZERO, top: Rgb::ZERO },
@@ -214,5 +215,6 @@ fn add_ground(scene: &mut Scene, bounds: &Bounds) {
         }),
         material: Some(MaterialId(scene.materials.len() as u32 - 1)),
         casts_shadow: Some(false),
+        shading: None,
     });
 }

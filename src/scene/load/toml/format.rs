@@ -19,6 +19,8 @@ pub static SCENE: Section = Section {
     ],
 };
 
+pub const SHADING_NAMES: [&str; 3] = ["flat", "gouraud", "phong"];
+
 pub static RENDER: Section = Section {
     name: "[render]",
     noun: "[render]",
@@ -45,6 +47,12 @@ pub static RENDER: Section = Section {
             "Branches that add less than this share to the pixel are cut",
         ),
         key("shadows", Kind::Boolean, "true", "Trace shadow rays"),
+        key(
+            "shading",
+            Kind::Choice(&SHADING_NAMES),
+            "`\"phong\"`",
+            "How triangles are shaded under `local`. `flat`: once, at the centroid with the triangle's normal. `gouraud`: at the corners, each with its own normal, texture value and direction to the eye, and interpolated. `phong`: at every sample with the interpolated normal",
+        ),
         key(
             "intensity",
             Kind::Choice(&["lecture", "radiometric"]),
@@ -253,6 +261,7 @@ pub static OBJECT: Section = Section {
         MATRIX,
         TRANSFORM,
         key("casts_shadow", Kind::Boolean, "the material's", "Whether it stops shadow rays"),
+        key("shading", Kind::Choice(&SHADING_NAMES), "that of `[render]`", "How its triangles are shaded under `local`; a sphere needs `segments` for `flat` and `gouraud`"),
         key("instances", Kind::Special("an array of tables"), "none", "Copies that share the geometry: each placed by its own keys below, after the object's"),
         key("grid", Kind::Special("a table"), "none", "A block of copies; its keys are below"),
         key("radius", Kind::Number(Range::POSITIVE), "1", "Scene units").only(&["sphere", "disk", "cylinder", "cone"]),

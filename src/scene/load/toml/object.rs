@@ -4,11 +4,12 @@ use super::format::OBJECT;
 use super::names::Names;
 use super::place::{check, read_copies, read_place};
 use super::reader::{Reader, Result};
+use super::settings::SHADINGS;
 use super::shapes::{SHAPE_KINDS, ShapeKind, crease, tessellate};
 use super::texture::{beside, refer};
 use crate::scene::load::load_file;
 use crate::scene::shape::compute_smooth_normals;
-use crate::scene::{Geometry, Material, MaterialId, Mesh, MeshId, Object, Scene, TextureId, Transform};
+use crate::scene::{Geometry, Material, MaterialId, Mesh, MeshId, Object, Scene, Shading, TextureId, Transform};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -66,9 +67,14 @@ impl Objects<'_> {
         let material = self.read_material(table)?;
         let place = read_place(table)?;
         let casts_shadow = table.boolean("casts_shadow")?;
+        let shading = table.choice("shading", &SHADINGS)?;
         let pieces = match (kind, tessellate(table, kind)?) {
             (ShapeKind::Mesh, _) => self.read_file(table)?,
             (_, Some(mesh)) => vec![self.add_mesh(mesh)],
+            (_, None) if shading.unwrap_or(self.scene.settings.shading) != Shading::Phong => {
+                let message = "a sphere without \"segments\" has no triangles to shade flat or by Gouraud's method";
+                return Err(table.bad("shading", message));
+            }
             (_, None) => {
                 let radius = table.number("radius")?.unwrap_or(1.0);
                 let transform = Transform(glam::DAffine3::from_scale(DVec3::splat(radius)));
@@ -89,7 +95,14 @@ impl Objects<'_> {
                 let transform = check(table, piece.transform.then(place).then(copy.transform))?;
                 let material = own.or(material).or(piece.material);
                 let material = material.or_else(|| self.needs_material(piece.geometry).then(|| self.grey()));
-                self.scene.objects.push(Object { name, geometry: piece.geometry, transform, material, casts_shadow });
+                self.scene.objects.push(Object {
+                    name,
+                    geometry: piece.geometry,
+                    transform,
+                    material,
+                    casts_shadow,
+                    shading,
+                });
             }
         }
         Ok(())

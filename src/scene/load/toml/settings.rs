@@ -5,7 +5,7 @@ use super::format::{BACKGROUND, CAMERA, FILM, FILTER, FILTER_NAMES, RENDER};
 use super::keys::Range;
 use super::reader::{Reader, Result, in_range};
 use crate::scene::{
-    Background, Camera, Film, Filter, Integrator, IntensityUnit, Projection, RenderSettings, Sampler, ToneMap,
+    Background, Camera, Film, Filter, Integrator, IntensityUnit, Projection, RenderSettings, Sampler, Shading, ToneMap,
 };
 use glam::Vec3;
 
@@ -15,6 +15,10 @@ pub struct LightSettings {
     pub unit: IntensityUnit,
     pub ambient: Vec3,
 }
+
+/// Words of `shading`.
+pub const SHADINGS: [(&str, Shading); 3] =
+    [("flat", Shading::Flat), ("gouraud", Shading::Gouraud), ("phong", Shading::Phong)];
 
 /// Overwrites what `[render]` writes.
 pub fn read_render(root: &Reader, settings: &mut RenderSettings, light: &mut LightSettings) -> Result<()> {
@@ -30,6 +34,7 @@ pub fn read_render(root: &Reader, settings: &mut RenderSettings, light: &mut Lig
     set(&mut settings.max_depth, table.integer("max_depth")?);
     set(&mut settings.min_weight, table.float("min_weight")?);
     set(&mut settings.shadows, table.boolean("shadows")?);
+    set(&mut settings.shading, table.choice("shading", &SHADINGS)?);
     set(&mut light.unit, table.choice("intensity", &units)?);
     set(&mut light.ambient, table.color("ambient")?);
     Ok(())
