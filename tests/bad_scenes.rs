@@ -139,7 +139,7 @@ fn settings_out_of_range_are_refused() {
         ("[film]\nfilter = { radius = 1 }", "a.toml:6:10: a filter needs the key \"type\""),
         (
             "[film]\nfilter = \"sinc\"",
-            "a.toml:6:10: \"filter\" must be \"box\", \"tent\", \"gaussian\", \"mitchell\" or a table, found the string \"sinc\"",
+            "a.toml:6:10: \"filter\" must be \"box\", \"tent\", \"gaussian\", \"mitchell\", \"catmull-rom\", \"blackman-harris\", \"lanczos\" or a table, found the string \"sinc\"",
         ),
         (
             "[film]\nfilter = { type = \"tent\", radius = 0 }",
@@ -312,6 +312,10 @@ fn shapes_that_have_no_surface_are_refused() {
         (
             "shape = \"quad\"\nsize = [1, 2, 3]",
             "a.toml:5:8: \"size\" of this shape must be a number > 0 or 2 of them, found an array of 3",
+        ),
+        (
+            "shape = \"sphere\"\nshading = \"gouraud\"",
+            "a.toml:5:11: a sphere without \"segments\" has no triangles to shade flat or by Gouraud's method",
         ),
         (
             "shape = \"torus\"\nminor_radius = 2",

@@ -101,6 +101,7 @@ fn a_scene_without_settings_has_the_documented_defaults() {
         rr_depth: 5,
         clamp: None,
         shadows: true,
+        shading: Shading::Phong,
     };
     assert_eq!(scene.settings, settings);
     assert_eq!((scene.ambient, scene.background), (Rgb::ZERO, Background::BLACK));
@@ -115,9 +116,9 @@ fn a_scene_without_settings_has_the_documented_defaults() {
 fn render_film_and_background_keys_arrive() {
     let text = format!(
         "[render]\nintegrator = \"local\"\nsamples = 9\nseed = 4294967295\nsampler = \"stratified\"\nmax_depth = 3\n\
-         min_weight = 0.5\nrr_depth = 2\nclamp = 10\nshadows = false\nambient = [0.1, 0.2, 0.3]\n\
-         [film]\nsize = [3, 2]\nfilter = {{ type = \"gaussian\", radius = 2.5 }}\nunit = 0.25\ntonemap = \"reinhard\"\nexposure = -1\n\
-         [background]\nbottom = 0.5\ntop = \"white\"\n{LEAST}"
+         min_weight = 0.5\nrr_depth = 2\nclamp = 10\nshadows = false\nshading = \"gouraud\"\nambient = [0.1, 0.2, 0.3]\n\
+         [film]\nsize = [3, 2]\nfilter = {{ type = \"gaussian\", radius = 2.5 }}\nunit = 0.25\ntonemap = \"reinhard\"\nexposure = -1\ngamma = 2.2\n\
+         [background]\nbottom = 0.5\ntop = \"white\"\n{LEAST}segments = 8\nshading = \"flat\"\n"
     );
     let scene = read(&text, &[]);
     let settings = RenderSettings {
@@ -130,8 +131,10 @@ fn render_film_and_background_keys_arrive() {
         rr_depth: 2,
         clamp: Some(10.0),
         shadows: false,
+        shading: Shading::Gouraud,
     };
     assert_eq!(scene.settings, settings);
+    assert_eq!(scene.objects[0].shading, Some(Shading::Flat));
     let film = Film {
         width: 3,
         height: 2,
@@ -139,6 +142,7 @@ fn render_film_and_background_keys_arrive() {
         unit_exponent: -2,
         tonemap: ToneMap::Reinhard,
         exposure: -1.0,
+        gamma: Some(2.2),
     };
     assert_eq!(scene.film, film);
     assert_eq!(scene.ambient, Rgb::new(0.1, 0.2, 0.3));

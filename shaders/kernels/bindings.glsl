@@ -28,6 +28,8 @@ layout(constant_id = 8) const uint SCENE_SAMPLING = SAMPLER_SOBOL;
 layout(constant_id = 9) const uint SCENE_FILTER = FILTER_BOX;
 layout(constant_id = 10) const bool SCENE_HAS_SPHERES = true;
 layout(constant_id = 11) const bool SCENE_HAS_AOVS = true;
+// Objects shaded flat or by Gouraud's method.
+layout(constant_id = 12) const bool SCENE_HAS_FACETS = true;
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };

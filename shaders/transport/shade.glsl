@@ -8,6 +8,7 @@
 #include "shading/sampling.glsl"
 #include "shading/spectrum.glsl"
 #include "trace/surface.glsl"
+#include "transport/faceted.glsl"
 #include "transport/generate.glsl"
 #include "transport/local.glsl"
 #include "transport/path.glsl"
@@ -46,11 +47,20 @@ void shade(PathState incoming, Hit hit) {
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
         add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
     }
-    if (header.integrator == INTEGRATOR_PATH) {
+    if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
         shade_path(path, key, hit, surface, material);
         return;
     }
-    shade_local(path, key, surface, material);
+    uint flags = SCENE_HAS_FACETS ? load_instance(hit.instance).flags : 0u;
+    for (uint index = 0u; index < shading_points(flags); index++) {
+        ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
+        Material material_there = material;
+        if (faceted(flags)) {
+            material_there = material_at(point.surface);
+        }
+        shade_local(path, key, point, material_there);
+    }
+    shade_through(path, surface, material);
     if (SCENE_INTEGRATOR == INTEGRATOR_WHITTED && path.depth < header.max_depth) {
         shade_whitted(path, surface, material);
     }

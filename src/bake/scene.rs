@@ -10,10 +10,13 @@ use super::model::{bake_blends, bake_material, casts_shadow};
 use super::srgb::srgb_table;
 use super::{BakeError, SceneData};
 use crate::layout::{
-    Camera, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH,
-    KIND_SPHERE, SAMPLER_INDEPENDENT, SAMPLER_SOBOL, SAMPLER_STRATIFIED, STACK_SIZE, SceneHeader,
+    Camera, INSTANCE_FLAT, INSTANCE_GOURAUD, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL,
+    INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH, KIND_SPHERE, SAMPLER_INDEPENDENT, SAMPLER_SOBOL,
+    SAMPLER_STRATIFIED, STACK_SIZE, SceneHeader,
 };
-use crate::scene::{self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene};
+use crate::scene::{
+    self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene, Shading,
+};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -50,6 +53,7 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     data.header.light_count = data.lights.len() as u32;
     data.header.material_count = data.materials.len() as u32;
     data.place_heap()?;
+    data.warnings.extend(unused_shading(scene));
     data.times.whole_s = start.elapsed().as_secs_f64();
     Ok(data)
 }
@@ -182,13 +186,37 @@ fn place_objects(
                 (None, None) => default_material.0,
             },
             flags: (if shadowed { 0 } else { INSTANCE_NO_SHADOW })
-                | (if placement.mirrored { INSTANCE_MIRRORED } else { 0 }),
+                | (if placement.mirrored { INSTANCE_MIRRORED } else { 0 })
+                | instance_shading(scene, object)?,
             object: index as u32,
             ..Instance::default()
         });
     }
     check_count("instances", data.instances.len())?;
     Ok(parts)
+}
+
+/// Says so where a shading is asked for that the integrator does not honour.
+fn unused_shading(scene: &Scene) -> Option<String> {
+    let asked = |object: &Object| object.shading.unwrap_or(scene.settings.shading) != Shading::Phong;
+    let unused = scene.settings.integrator != Integrator::Local && scene.objects.iter().any(asked);
+    unused.then(|| "\"shading\" has an effect with integrator \"local\" only: all is shaded as \"phong\"".into())
+}
+
+/// The flag of an object's shading, which only `local` honours.
+fn instance_shading(scene: &Scene, object: &Object) -> Result<u32, BakeError> {
+    if scene.settings.integrator != Integrator::Local {
+        return Ok(0);
+    }
+    let flag = match object.shading.unwrap_or(scene.settings.shading) {
+        Shading::Flat => INSTANCE_FLAT,
+        Shading::Gouraud => INSTANCE_GOURAUD,
+        Shading::Phong => return Ok(0),
+    };
+    match object.geometry {
+        Geometry::Sphere => Err(BakeError::Faceted { name: object.name.clone() }),
+        Geometry::Mesh(_) => Ok(flag),
+    }
 }
 
 /// Whether an object casts shadows: what it says, else what its material says. Shadow rays know instances, not

@@ -266,5 +266,6 @@ pub fn film_of(scene: &Scene, data: &SceneData, crop: Rect) -> Film {
         aovs: data.header.aovs != 0,
         tonemap: scene.film.tonemap,
         exposure: scene.film.exposure,
+        gamma: scene.film.gamma,
     })
 }

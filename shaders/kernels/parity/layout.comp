@@ -170,6 +170,8 @@ void store_constants() {
     constants[93] = EMITTER_TEXTURED;
     constants[94] = EMITTER_WORDS;
     constants[95] = ENVIRONMENT_MAP_WORDS;
+    constants[96] = INSTANCE_FLAT;
+    constants[97] = INSTANCE_GOURAUD;
 }
 
 void main() {

@@ -8,7 +8,7 @@ use super::plan::QueuePlan;
 use super::record::Recorder;
 use super::scene::SceneBuffers;
 use crate::bake::SceneData;
-use crate::layout::{Batch, Control, DispatchArguments, KIND_SPHERE};
+use crate::layout::{Batch, Control, DispatchArguments, INSTANCE_FLAT, INSTANCE_GOURAUD, KIND_SPHERE};
 use crate::shaders;
 use std::mem::offset_of;
 
@@ -45,8 +45,9 @@ const NAMES: Stages<&str> = Stages {
 };
 
 /// Specialisation constants that say what the scene uses (`shaders/kernels/bindings.glsl`).
-fn scene_constants(data: &SceneData) -> [(u32, u32); 7] {
+fn scene_constants(data: &SceneData) -> [(u32, u32); 8] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
+    let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
     let models = data.materials.iter().fold(0, |mask, material| mask | 1 << material.model);
     [
         (5, data.stack_depth.max(1)),
@@ -56,6 +57,7 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 7] {
         (9, data.header.filter_kind),
         (10, u32::from(spheres)),
         (11, data.header.aovs),
+        (12, u32::from(facets)),
     ]
 }
 

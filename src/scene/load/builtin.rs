@@ -201,6 +201,7 @@ fn add_object(scene: &mut Scene, geometry: Geometry, transform: Transform, mater
         transform,
         material: Some(material),
         casts_shadow: None,
+        shading: None,
     });
 }
 

@@ -19,6 +19,8 @@ pub static SCENE: Section = Section {
     ],
 };
 
+pub const SHADING_NAMES: [&str; 3] = ["flat", "gouraud", "phong"];
+
 pub static RENDER: Section = Section {
     name: "[render]",
     noun: "[render]",
@@ -58,6 +60,12 @@ pub static RENDER: Section = Section {
         ),
         key("shadows", Kind::Boolean, "true", "Trace shadow rays"),
         key(
+            "shading",
+            Kind::Choice(&SHADING_NAMES),
+            "`\"phong\"`",
+            "How triangles are shaded under `local`. `flat`: once, at the centroid with the triangle's normal. `gouraud`: at the corners, each with its own normal, texture value and direction to the eye, and interpolated. `phong`: at every sample with the interpolated normal",
+        ),
+        key(
             "intensity",
             Kind::Choice(&["lecture", "radiometric"]),
             "`\"radiometric\"`",
@@ -74,9 +82,11 @@ pub static FILM: Section = Section {
         key("size", Kind::Special("two integers [width, height] from 1 to 65535"), "[1280, 720]", "Pixels"),
         key(
             "filter",
-            Kind::Special("\"box\", \"tent\", \"gaussian\", \"mitchell\" or a table"),
+            Kind::Special(
+                "\"box\", \"tent\", \"gaussian\", \"mitchell\", \"catmull-rom\", \"blackman-harris\", \"lanczos\" or a table",
+            ),
             "`\"gaussian\"`",
-            "Reconstruction filter; the table's keys are below. Mitchell has negative lobes: sharper, and noisy below some 64 samples",
+            "Reconstruction filter; the table's keys are below. Mitchell, Catmull-Rom and Lanczos have negative lobes: sharper, and noisy below some 64 samples",
         ),
         key(
             "unit",
@@ -86,24 +96,33 @@ pub static FILM: Section = Section {
         ),
         key(
             "tonemap",
-            Kind::Choice(&["clamp", "normalise", "reinhard"]),
+            Kind::Choice(&["clamp", "normalise", "reinhard", "aces", "agx"]),
             "`\"clamp\"`",
-            "Display: cut at 1, divide by the image's maximum, or L/(1+L)",
+            "Display: cut at 1, divide by the image's maximum, L/(1+L) (Reinhard et al. 2002), ACES 1.0 (fit by Hill 2016) or AgX (Sobotka 2022)",
         ),
         key("exposure", Kind::Number(Range::new(-64.0, 64.0)), "0", "Display: stops; +1 doubles"),
+        key(
+            "gamma",
+            Kind::Special("a number from 0.1 to 10 or \"srgb\""),
+            "`\"srgb\"`",
+            "Display: what integers store is light to the power 1/gamma, or the curve of the sRGB standard",
+        ),
     ],
 };
+
+pub const FILTER_NAMES: [&str; 7] =
+    ["box", "tent", "gaussian", "mitchell", "catmull-rom", "blackman-harris", "lanczos"];
 
 pub static FILTER: Section = Section {
     name: "filter = { … }",
     noun: "a filter",
     keys: &[
-        key("type", Kind::Choice(&["box", "tent", "gaussian", "mitchell"]), "required", "Its shape"),
+        key("type", Kind::Choice(&FILTER_NAMES), "required", "Its shape"),
         key(
             "radius",
             Kind::Number(Range::above(0.0, 16.0)),
-            "box 0.5, tent 1, gaussian 1.5, mitchell 2",
-            "Half width, pixels",
+            "box 0.5, tent 1, gaussian 1.5, mitchell 2, catmull-rom 2, blackman-harris 2, lanczos 3",
+            "Half width, pixels; of lanczos also its number of lobes",
         ),
         key("sigma", Kind::Number(Range::above(0.0, 16.0)), "0.5", "Standard deviation, pixels").only(&["gaussian"]),
         key("b", Kind::Number(Range::UNIT), "1/3", "B of Mitchell and Netravali 1988").only(&["mitchell"]),
@@ -267,6 +286,7 @@ pub static OBJECT: Section = Section {
         MATRIX,
         TRANSFORM,
         key("casts_shadow", Kind::Boolean, "the material's", "Whether it stops shadow rays"),
+        key("shading", Kind::Choice(&SHADING_NAMES), "that of `[render]`", "How its triangles are shaded under `local`; a sphere needs `segments` for `flat` and `gouraud`"),
         key("instances", Kind::Special("an array of tables"), "none", "Copies that share the geometry: each placed by its own keys below, after the object's"),
         key("grid", Kind::Special("a table"), "none", "A block of copies; its keys are below"),
         key("radius", Kind::Number(Range::POSITIVE), "1", "Scene units").only(&["sphere", "disk", "cylinder", "cone"]),
