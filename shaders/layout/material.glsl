@@ -23,7 +23,7 @@ const uint MATERIAL_D_1982 = 8u;
 
 // One material. 144 bytes. Colours are linear Rec. 709.
 struct Material {
-    // O_d; for a mirror its reflectance; multiplied by `color_texture` and the vertex colour.
+    // O_d; for a mirror its reflectance; multiplied by its textures and the vertex colour.
     vec3 color;
     // `MODEL_*`.
     uint model;
@@ -52,11 +52,12 @@ struct Material {
     uint flags;
     // O_t of filtered transparency.
     vec3 transmit_color;
-    // Texture of `color`, or `INVALID`.
-    uint color_texture;
+    // Index of the first record in the texture array that belongs to the material.
+    uint first_texture;
     // Beer coefficient inside a dielectric, per scene unit.
     vec3 absorption;
-    uint pad0;
+    // How many of them there are.
+    uint texture_count;
     // Radiance the surface adds by itself (no other surface is lit by it under local and whitted).
     vec3 emission;
     uint pad1;
@@ -91,10 +92,10 @@ Material load_material(uint index) {
     r.flags = w5.w;
     uvec4 w6 = fetch_data(at + 6u);
     r.transmit_color = uintBitsToFloat(w6.xyz);
-    r.color_texture = w6.w;
+    r.first_texture = w6.w;
     uvec4 w7 = fetch_data(at + 7u);
     r.absorption = uintBitsToFloat(w7.xyz);
-    r.pad0 = w7.w;
+    r.texture_count = w7.w;
     uvec4 w8 = fetch_data(at + 8u);
     r.emission = uintBitsToFloat(w8.xyz);
     r.pad1 = w8.w;

@@ -7,10 +7,10 @@
 #include "shading/math.glsl"
 #include "shading/sampling.glsl"
 #include "shading/spectrum.glsl"
-#include "shading/texture.glsl"
 #include "trace/surface.glsl"
 #include "transport/generate.glsl"
 #include "transport/local.glsl"
+#include "transport/textured.glsl"
 #include "transport/whitted.glsl"
 
 // Throughput below this is nothing, on every device alike (strict rule 4).
@@ -22,17 +22,6 @@ vec3 background(vec3 direction) {
     vec3 bottom = header.background_bottom;
     vec3 top = header.background_top;
     return vec3(mix_(bottom.x, top.x, height), mix_(bottom.y, top.y, height), mix_(bottom.z, top.z, height));
-}
-
-// The surface's material with its texture and vertex colour applied.
-Material material_at(Surface surface) {
-    Material material = load_material(surface.material);
-    material.color *= surface.color;
-    if (material.color_texture != INVALID) {
-        vec4 texel = sample_texture(load_texture(material.color_texture), surface.uv);
-        material.color *= vec3(texel.x, texel.y, texel.z);
-    }
-    return material;
 }
 
 // Shades one path: adds what it sees, appends shadow rays and the rays that go on.
@@ -55,7 +44,7 @@ void shade(PathState incoming, Hit hit) {
         return;
     }
     Surface surface = surface_at(path.ray, hit);
-    Material material = material_at(surface);
+    Material material = material_at(path.ray.direction, hit, surface);
     if (header.aovs != 0u && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);

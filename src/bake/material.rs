@@ -1,16 +1,12 @@
-//! Materials, lights and textures as the device reads them.
+//! Materials and lights as the device reads them.
 
 use super::BakeError;
 use crate::layout::{
-    ATTENUATION_INVERSE_SQUARE, ATTENUATION_NONE, ATTENUATION_POLYNOMIAL, INVALID, LIGHT_DIRECTIONAL, LIGHT_POINT,
-    LIGHT_SPOT, Light, MAGNIFY_BILINEAR, MAGNIFY_NEAREST, MATERIAL_CONDUCTOR, MATERIAL_D_1982, MATERIAL_FILTERED,
-    MATERIAL_LAFORTUNE, MODEL_BLINN_PHONG, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_LAMBERT,
-    MODEL_MIRROR, MODEL_PHONG, Material, TEXEL_FLOAT, TEXEL_LINEAR8, TEXEL_SRGB8, Texture, WRAP_CLAMP, WRAP_MIRROR,
-    WRAP_REPEAT,
+    ATTENUATION_INVERSE_SQUARE, ATTENUATION_NONE, ATTENUATION_POLYNOMIAL, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT,
+    Light, MATERIAL_CONDUCTOR, MATERIAL_D_1982, MATERIAL_FILTERED, MATERIAL_LAFORTUNE, MODEL_BLINN_PHONG,
+    MODEL_COOK_TORRANCE, MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_LAMBERT, MODEL_MIRROR, MODEL_PHONG, Material,
 };
-use crate::scene::{
-    self, Attenuation, Fresnel, IntensityUnit, LightKind, Model, Parameter, TextureData, Transparency, Wrap,
-};
+use crate::scene::{self, Attenuation, Fresnel, IntensityUnit, LightKind, Model, Transparency};
 use glam::{DVec3, Vec3};
 
 /// One material.
@@ -23,7 +19,6 @@ pub fn bake_material(material: &scene::Material) -> Result<Material, BakeError> 
         k_s: material.k_s,
         k_r: material.k_r,
         eta: Vec3::ONE,
-        color_texture: material.texture(Parameter::Color).map_or(INVALID, |id| id.0),
         emission: material.emission,
         ..Material::default()
     };
@@ -136,42 +131,4 @@ pub fn bake_light(light: &scene::Light) -> Light {
         Attenuation::None => baked.attenuation = ATTENUATION_NONE,
     }
     baked
-}
-
-/// One texture; its words are appended to `texels`.
-pub fn bake_texture(texture: &scene::Texture, texels: &mut Vec<u32>) -> Texture {
-    let wrap = |wrap| match wrap {
-        Wrap::Repeat => WRAP_REPEAT,
-        Wrap::Clamp => WRAP_CLAMP,
-        Wrap::Mirror => WRAP_MIRROR,
-    };
-    let first_word = texels.len() as u32;
-    let format = match &texture.data {
-        TextureData::Srgb8(data) => {
-            texels.extend(data.iter().map(|&rgba| u32::from_le_bytes(rgba)));
-            TEXEL_SRGB8
-        }
-        TextureData::Linear8(data) => {
-            texels.extend(data.iter().map(|&rgba| u32::from_le_bytes(rgba)));
-            TEXEL_LINEAR8
-        }
-        TextureData::Float(data) => {
-            texels.extend(data.iter().flatten().map(|x| x.to_bits()));
-            TEXEL_FLOAT
-        }
-    };
-    Texture {
-        width: texture.width,
-        height: texture.height,
-        first_word,
-        format,
-        wrap_u: wrap(texture.wrap_u),
-        wrap_v: wrap(texture.wrap_v),
-        magnify: if texture.bilinear { MAGNIFY_BILINEAR } else { MAGNIFY_NEAREST },
-        scale_u: texture.scale[0],
-        scale_v: texture.scale[1],
-        offset_u: texture.offset[0],
-        offset_v: texture.offset[1],
-        ..Texture::default()
-    }
 }

@@ -4,8 +4,9 @@ use super::bvh::{Bounds, TOP_LEAF, Tree};
 use super::filter::filter_table;
 use super::geometry::{BakedMesh, bake_mesh};
 use super::instance::{place, top_margin};
-use super::material::{bake_light, bake_material, bake_texture, casts_shadow, unit};
+use super::material::{bake_light, bake_material, casts_shadow, unit};
 use super::srgb::srgb_table;
+use super::texture::{bake_textures, bind_textures};
 use super::{BakeError, SceneData};
 use crate::layout::{
     Camera, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH,
@@ -23,12 +24,10 @@ const DEEP_PART: u32 = 12;
 /// Bakes a scene whose indices are valid (`scene::load` guarantees it).
 pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     let mut data = SceneData::default();
+    bake_textures(&scene.textures, &mut data);
+    check_count("words of texels", data.texels.len())?;
     let default_material = bake_materials(scene, &mut data)?;
     data.lights = scene.lights.iter().map(bake_light).collect();
-    for texture in &scene.textures {
-        data.textures.push(bake_texture(texture, &mut data.texels));
-    }
-    check_count("words of texels", data.texels.len())?;
     let meshes = bake_meshes(scene, default_material);
     data.header = header(scene)?;
     bake_tables(&scene.film.filter, &mut data);
@@ -50,7 +49,9 @@ fn check_count(what: &'static str, count: usize) -> Result<(), BakeError> {
 /// Bakes all materials, and one more where an object or face names none. Returns the id of that one.
 fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, BakeError> {
     for material in &scene.materials {
-        data.materials.push(bake_material(material)?);
+        let mut baked = bake_material(material)?;
+        bind_textures(material, &mut baked, data)?;
+        data.materials.push(baked);
     }
     let nameless = |object: &Object| match object.geometry {
         Geometry::Sphere => object.material.is_none(),
@@ -294,6 +295,7 @@ fn camera(camera: &scene::Camera, film: &Film) -> Result<Camera, BakeError> {
         up: (up * half_height).as_vec3(),
         scale_y: (2.0 / f64::from(film.height)) as f32,
         forward: unit(forward),
+        pixel_size: (2.0 * half_height / f64::from(film.height)) as f32,
         ..Camera::default()
     })
 }

@@ -26,7 +26,7 @@ pub const MATERIAL_D_1982: u32 = 8;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Material {
-    /// O_d; for a mirror its reflectance; multiplied by `color_texture` and the vertex colour.
+    /// O_d; for a mirror its reflectance; multiplied by its textures and the vertex colour.
     pub color: Vec3,
     /// `MODEL_*`.
     pub model: u32,
@@ -55,11 +55,12 @@ pub struct Material {
     pub flags: u32,
     /// O_t of filtered transparency.
     pub transmit_color: Vec3,
-    /// Texture of `color`, or `INVALID`.
-    pub color_texture: u32,
+    /// Index of the first record in the texture array that belongs to the material.
+    pub first_texture: u32,
     /// Beer coefficient inside a dielectric, per scene unit.
     pub absorption: Vec3,
-    pub _pad0: u32,
+    /// How many of them there are.
+    pub texture_count: u32,
     /// Radiance the surface adds by itself (no other surface is lit by it under local and whitted).
     pub emission: Vec3,
     pub _pad1: u32,

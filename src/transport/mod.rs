@@ -9,6 +9,7 @@ pub mod film;
 pub mod generate;
 pub mod local;
 pub mod shade;
+pub mod textured;
 pub mod whitted;
 
 use crate::layout::{AovPixel, FilmSum, PathState, ShadowRay};

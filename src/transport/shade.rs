@@ -2,16 +2,16 @@
 
 use super::generate::sample_key;
 use super::local::shade_local;
+use super::textured::material_at;
 use super::whitted::shade_whitted;
 use super::{DITHER_BACKGROUND, Queues, add_aov, add_contribution};
-use crate::layout::{Hit, INTEGRATOR_WHITTED, INVALID, Material, PathState, SceneView, load_material, load_texture};
+use crate::layout::{Hit, INTEGRATOR_WHITTED, INVALID, PathState, SceneView};
 use crate::shading::dielectric::transmittance;
 use crate::shading::material::albedo_material;
 use crate::shading::math::mix_;
 use crate::shading::sampling::dither_hash;
 use crate::shading::spectrum::{spectrum_from_rgb, spectrum_max};
-use crate::shading::texture::sample_texture;
-use crate::trace::surface::{Surface, surface_at};
+use crate::trace::surface::surface_at;
 use glam::{Vec3, Vec4};
 
 /// Throughput below this is nothing, on every device alike (strict rule 4).
@@ -23,17 +23,6 @@ pub fn background(scene: &SceneView, direction: Vec3) -> Vec3 {
     let bottom = scene.header.background_bottom;
     let top = scene.header.background_top;
     Vec3::new(mix_(bottom.x, top.x, height), mix_(bottom.y, top.y, height), mix_(bottom.z, top.z, height))
-}
-
-/// The surface's material with its texture and vertex colour applied.
-pub fn material_at(scene: &SceneView, surface: &Surface) -> Material {
-    let mut material = load_material(scene, surface.material);
-    material.color *= surface.color;
-    if material.color_texture != INVALID {
-        let texel = sample_texture(scene, &load_texture(scene, material.color_texture), surface.uv);
-        material.color *= Vec3::new(texel.x, texel.y, texel.z);
-    }
-    material
 }
 
 /// Shades one path: adds what it sees, appends shadow rays and the rays that go on.
@@ -61,8 +50,8 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     if spectrum_max(path.throughput) < THROUGHPUT_MIN {
         return;
     }
-    let surface = surface_at(scene, &path.ray, hit);
-    let material = material_at(scene, &surface);
+    let mut surface = surface_at(scene, &path.ray, hit);
+    let material = material_at(scene, path.ray.direction, hit, &mut surface);
     if scene.header.aovs != 0 && path.path_id == 0 {
         let albedo = albedo_material(&material);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);

@@ -127,6 +127,28 @@ void store_constants() {
     constants[52] = MAGNIFY_BILINEAR;
     constants[53] = TEXTURE_WORDS;
     constants[54] = STACK_SIZE;
+    constants[55] = PATTERN_CHECKER;
+    constants[56] = PATTERN_NOISE;
+    constants[57] = PATTERN_GRADIENT;
+    constants[58] = PATTERN_ZONE_PLATE;
+    constants[59] = PARAMETER_COLOR;
+    constants[60] = PARAMETER_SPECULAR_COLOR;
+    constants[61] = PARAMETER_EMISSION;
+    constants[62] = PARAMETER_ROUGHNESS;
+    constants[63] = PARAMETER_ROUGHNESS_U;
+    constants[64] = PARAMETER_ROUGHNESS_V;
+    constants[65] = PARAMETER_METALLIC;
+    constants[66] = PARAMETER_OPACITY;
+    constants[67] = PARAMETER_MASK;
+    constants[68] = PARAMETER_WEIGHT;
+    constants[69] = PARAMETER_NORMAL;
+    constants[70] = PARAMETER_BUMP;
+    constants[71] = CHANNEL_R;
+    constants[72] = CHANNEL_G;
+    constants[73] = CHANNEL_B;
+    constants[74] = CHANNEL_A;
+    constants[75] = CHANNEL_RGB;
+    constants[76] = TEXTURES_MOST;
 }
 
 void main() {

@@ -4,6 +4,7 @@ pub mod film;
 pub mod math;
 pub mod models;
 pub mod shading;
+pub mod texture;
 pub mod trace;
 pub mod warp;
 
@@ -32,7 +33,7 @@ pub struct Family {
 
 /// All of them.
 pub static FAMILIES: &[Family] =
-    &[math::FAMILY, film::FAMILY, shading::FAMILY, models::FAMILY, warp::FAMILY, trace::FAMILY];
+    &[math::FAMILY, film::FAMILY, shading::FAMILY, models::FAMILY, warp::FAMILY, trace::FAMILY, texture::FAMILY];
 
 /// The arguments of one evaluation, read as the harness in GLSL reads them.
 pub struct In<'a>(&'a [u32]);

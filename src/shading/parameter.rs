@@ -1,0 +1,42 @@
+//! What a texture's value does to a material (row 27).
+
+use crate::layout::{
+    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, Material, PARAMETER_COLOR, PARAMETER_EMISSION, PARAMETER_ROUGHNESS,
+    PARAMETER_SPECULAR_COLOR,
+};
+use crate::shading::math::max_;
+use glam::{Vec3, Vec4};
+
+/// No texture makes a lobe narrower: below, distributions overflow.
+const ALPHA_LEAST: f32 = 1.0e-3;
+
+/// The channel of a texel as all three components, or its colour. `channel`: `CHANNEL_*`.
+#[inline]
+pub fn channel_value(texel: Vec4, channel: u32) -> Vec3 {
+    match channel {
+        CHANNEL_R => Vec3::splat(texel.x),
+        CHANNEL_G => Vec3::splat(texel.y),
+        CHANNEL_B => Vec3::splat(texel.z),
+        CHANNEL_A => Vec3::splat(texel.w),
+        // CHANNEL_RGB
+        _ => Vec3::new(texel.x, texel.y, texel.z),
+    }
+}
+
+/// `material` with one parameter multiplied by `value`. `parameter`: `PARAMETER_*` but for normal and bump maps; scalars
+/// take the first component.
+#[inline]
+pub fn apply_parameter(material: Material, parameter: u32, value: Vec3) -> Material {
+    let mut result = material;
+    match parameter {
+        PARAMETER_COLOR => result.color *= value,
+        PARAMETER_SPECULAR_COLOR => result.specular_color *= value,
+        PARAMETER_EMISSION => result.emission *= value,
+        PARAMETER_ROUGHNESS => {
+            result.m0 = max_(material.m0 * value.x, ALPHA_LEAST);
+            result.m1 = max_(material.m1 * value.x, ALPHA_LEAST);
+        }
+        _ => {}
+    }
+    result
+}
