@@ -30,7 +30,7 @@ const uint PARAMETER_ROUGHNESS_U = 4u;
 const uint PARAMETER_ROUGHNESS_V = 5u;
 const uint PARAMETER_METALLIC = 6u;
 const uint PARAMETER_OPACITY = 7u;
-// Opacity 0 below `scale` and 1 from there on.
+// Opacity 0 below `scale` and 1 from there on, instead of a factor.
 const uint PARAMETER_MASK = 8u;
 const uint PARAMETER_WEIGHT = 9u;
 const uint PARAMETER_NORMAL = 10u;

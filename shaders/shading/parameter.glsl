@@ -20,10 +20,11 @@ vec3 channel_value(vec4 texel, uint channel) {
     }
 }
 
-// `material` with one parameter multiplied by `value`. `parameter`: `PARAMETER_*` but for normal and bump maps; scalars
-// take the first component.
-Material apply_parameter(Material material, uint parameter, vec3 value) {
+// `material` with one parameter multiplied by `texel` times `scale`. `parameter`: `PARAMETER_*` but for normal and bump
+// maps; scalars take the first component. A mask covers all where `texel` reaches `scale`, and nothing elsewhere.
+Material apply_parameter(Material material, uint parameter, vec3 texel, float scale) {
     Material result = material;
+    vec3 value = texel * scale;
     switch (parameter) {
     case PARAMETER_COLOR: result.color *= value; break;
     case PARAMETER_SPECULAR_COLOR: result.specular_color *= value; break;
@@ -32,6 +33,10 @@ Material apply_parameter(Material material, uint parameter, vec3 value) {
         result.m0 = max_(material.m0 * value.x, ALPHA_LEAST);
         result.m1 = max_(material.m1 * value.x, ALPHA_LEAST);
         break;
+    // k_t is what is not covered.
+    case PARAMETER_OPACITY: result.k_t = 1.0 - (1.0 - material.k_t) * clamp_(value.x, 0.0, 1.0); break;
+    case PARAMETER_MASK: result.k_t = (1.0 - material.k_t) * texel.x >= scale ? 0.0 : 1.0; break;
+    // Normal and bump maps.
     default: break;
     }
     return result;

@@ -54,7 +54,7 @@ Material material_at(vec3 direction, Hit hit, inout Surface surface) {
             UvGradients own = texture_gradients(texture_record, gradients);
             surface.normal = mapped_normal(surface.normal, own, value, texture_record.scale);
         } else {
-            material = apply_parameter(material, texture_record.parameter, value * texture_record.scale);
+            material = apply_parameter(material, texture_record.parameter, value, texture_record.scale);
         }
     }
     return material;

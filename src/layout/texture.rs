@@ -30,7 +30,7 @@ pub const PARAMETER_ROUGHNESS_U: u32 = 4;
 pub const PARAMETER_ROUGHNESS_V: u32 = 5;
 pub const PARAMETER_METALLIC: u32 = 6;
 pub const PARAMETER_OPACITY: u32 = 7;
-/// Opacity 0 below `scale` and 1 from there on.
+/// Opacity 0 below `scale` and 1 from there on, instead of a factor.
 pub const PARAMETER_MASK: u32 = 8;
 pub const PARAMETER_WEIGHT: u32 = 9;
 pub const PARAMETER_NORMAL: u32 = 10;

@@ -1,10 +1,10 @@
 //! What a texture's value does to a material (row 27).
 
 use crate::layout::{
-    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, Material, PARAMETER_COLOR, PARAMETER_EMISSION, PARAMETER_ROUGHNESS,
-    PARAMETER_SPECULAR_COLOR,
+    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, Material, PARAMETER_COLOR, PARAMETER_EMISSION, PARAMETER_MASK,
+    PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_SPECULAR_COLOR,
 };
-use crate::shading::math::max_;
+use crate::shading::math::{clamp_, max_};
 use glam::{Vec3, Vec4};
 
 /// No texture makes a lobe narrower: below, distributions overflow.
@@ -23,11 +23,12 @@ pub fn channel_value(texel: Vec4, channel: u32) -> Vec3 {
     }
 }
 
-/// `material` with one parameter multiplied by `value`. `parameter`: `PARAMETER_*` but for normal and bump maps; scalars
-/// take the first component.
+/// `material` with one parameter multiplied by `texel` times `scale`. `parameter`: `PARAMETER_*` but for normal and bump
+/// maps; scalars take the first component. A mask covers all where `texel` reaches `scale`, and nothing elsewhere.
 #[inline]
-pub fn apply_parameter(material: Material, parameter: u32, value: Vec3) -> Material {
+pub fn apply_parameter(material: Material, parameter: u32, texel: Vec3, scale: f32) -> Material {
     let mut result = material;
+    let value = texel * scale;
     match parameter {
         PARAMETER_COLOR => result.color *= value,
         PARAMETER_SPECULAR_COLOR => result.specular_color *= value,
@@ -36,6 +37,10 @@ pub fn apply_parameter(material: Material, parameter: u32, value: Vec3) -> Mater
             result.m0 = max_(material.m0 * value.x, ALPHA_LEAST);
             result.m1 = max_(material.m1 * value.x, ALPHA_LEAST);
         }
+        // k_t is what is not covered.
+        PARAMETER_OPACITY => result.k_t = 1.0 - (1.0 - material.k_t) * clamp_(value.x, 0.0, 1.0),
+        PARAMETER_MASK => result.k_t = if (1.0 - material.k_t) * texel.x >= scale { 0.0 } else { 1.0 },
+        // Normal and bump maps.
         _ => {}
     }
     result

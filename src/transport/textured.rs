@@ -55,7 +55,7 @@ pub fn material_at(scene: &SceneView, direction: Vec3, hit: &Hit, surface: &mut 
             let own = texture_gradients(&texture, gradients);
             surface.normal = mapped_normal(surface.normal, own, value, texture.scale);
         } else {
-            material = apply_parameter(material, texture.parameter, value * texture.scale);
+            material = apply_parameter(material, texture.parameter, value, texture.scale);
         }
     }
     material

@@ -100,9 +100,10 @@ void main() {
         m.emission = vec3(3.0, 2.0, 1.0);
         m.m0 = 0.25;
         m.m1 = 0.5;
-        Material applied = apply_parameter(m, argument_u(3u), v);
+        m.k_t = 0.25;
+        Material applied = apply_parameter(m, argument_u(3u), v, argument(4u));
         result4(0u, vec4(applied.color, applied.specular_color.x));
-        result3(4u, vec3(applied.emission.y, applied.m0, applied.m1));
+        result3(4u, vec3(applied.emission.y, applied.m0, applied.k_t));
         break;
     }
     }

@@ -138,7 +138,7 @@ pub const FAMILY: Family = Family {
         },
         Twin {
             name: "apply_parameter",
-            domains: &[UNIT, UNIT, UNIT, Below(12)],
+            domains: &[UNIT, UNIT, UNIT, Below(12), UNIT],
             run: |i, o| {
                 let material = Material {
                     color: Vec3::new(0.75, 0.5, 0.1),
@@ -146,10 +146,11 @@ pub const FAMILY: Family = Family {
                     emission: Vec3::new(3.0, 2.0, 1.0),
                     m0: 0.25,
                     m1: 0.5,
+                    k_t: 0.25,
                     ..Material::default()
                 };
-                let applied = apply_parameter(material, i.u(3), i.v3(0));
-                o.v3(applied.color).f(applied.specular_color.x).f(applied.emission.y).f(applied.m0).f(applied.m1);
+                let applied = apply_parameter(material, i.u(3), i.v3(0), i.f(4));
+                o.v3(applied.color).f(applied.specular_color.x).f(applied.emission.y).f(applied.m0).f(applied.k_t);
             },
         },
     ],
