@@ -5,7 +5,11 @@ mod common;
 use common::*;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use gonio::bake::{BakeError, SceneData, bake};
-use gonio::layout::{Material as Record, *};
+use gonio::layout::{
+    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, INVALID, Material as Record, PARAMETER_MASK, PARAMETER_METALLIC,
+    PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U, PARAMETER_ROUGHNESS_V, PARAMETER_WEIGHT, Ray,
+    T_INFINITE,
+};
 use gonio::scene::*;
 use gonio::shading::footprint::{Footprint, UvGradients, cone_footprint, mapped_normal, raised_normal};
 use gonio::shading::parameter::apply_parameter;
@@ -367,9 +371,15 @@ fn each_parameter_takes_its_texture() {
         }
         assert_eq!(got, want, "{parameter:?}");
     }
-    let record = Record { m0: 0.4, m1: 0.2, ..Record::default() };
+    let record = Record { m0: 0.4, m1: 0.2, m0_v: 0.8, m1_v: 0.1, extra: 0.5, ..Record::default() };
     assert_eq!(apply_parameter(record, PARAMETER_ROUGHNESS, Vec3::splat(0.5), 1.0).m0, 0.2);
     assert_eq!(apply_parameter(record, PARAMETER_ROUGHNESS, Vec3::ZERO, 1.0).m0, 1.0e-3, "never sharper than this");
+    let along = apply_parameter(record, PARAMETER_ROUGHNESS_U, Vec3::splat(0.5), 1.0);
+    assert_eq!([along.m0, along.m1, along.m0_v, along.m1_v], [0.2, 0.1, 0.8, 0.1]);
+    let across = apply_parameter(record, PARAMETER_ROUGHNESS_V, Vec3::splat(0.5), 1.0);
+    assert_eq!([across.m0, across.m1, across.m0_v, across.m1_v], [0.4, 0.2, 0.4, 0.05]);
+    assert_eq!(apply_parameter(record, PARAMETER_METALLIC, Vec3::splat(0.5), 1.0).extra, 0.25);
+    assert_eq!(apply_parameter(record, PARAMETER_WEIGHT, Vec3::splat(4.0), 1.0).extra, 1.0, "at most 1");
     assert_eq!(apply_parameter(record, PARAMETER_OPACITY, Vec3::splat(0.25), 1.0).k_t, 0.75);
     let half = Record { k_t: 0.5, ..record };
     assert_eq!(apply_parameter(half, PARAMETER_OPACITY, Vec3::splat(0.5), 1.0).k_t, 0.75, "half of a half");

@@ -30,9 +30,19 @@ Material apply_parameter(Material material, uint parameter, vec3 texel, float sc
     case PARAMETER_SPECULAR_COLOR: result.specular_color *= value; break;
     case PARAMETER_EMISSION: result.emission *= value; break;
     case PARAMETER_ROUGHNESS:
-        result.m0 = max_(material.m0 * value.x, ALPHA_LEAST);
-        result.m1 = max_(material.m1 * value.x, ALPHA_LEAST);
+    case PARAMETER_ROUGHNESS_U:
+    case PARAMETER_ROUGHNESS_V:
+        if (parameter != PARAMETER_ROUGHNESS_V) {
+            result.m0 = max_(material.m0 * value.x, ALPHA_LEAST);
+            result.m1 = max_(material.m1 * value.x, ALPHA_LEAST);
+        }
+        if (parameter != PARAMETER_ROUGHNESS_U) {
+            result.m0_v = max_(material.m0_v * value.x, ALPHA_LEAST);
+            result.m1_v = max_(material.m1_v * value.x, ALPHA_LEAST);
+        }
         break;
+    case PARAMETER_METALLIC:
+    case PARAMETER_WEIGHT: result.extra = clamp_(material.extra * value.x, 0.0, 1.0); break;
     // k_t is what is not covered.
     case PARAMETER_OPACITY: result.k_t = 1.0 - (1.0 - material.k_t) * clamp_(value.x, 0.0, 1.0); break;
     case PARAMETER_MASK: result.k_t = (1.0 - material.k_t) * texel.x >= scale ? 0.0 : 1.0; break;

@@ -5,7 +5,7 @@ use super::mip::mip_levels;
 use super::srgb::srgb_table;
 use super::{BakeError, SceneData};
 use crate::layout::{
-    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, MAGNIFY_BILINEAR, MAGNIFY_NEAREST, Material,
+    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, MAGNIFY_BILINEAR, MAGNIFY_NEAREST, MATERIAL_ANISOTROPIC, Material,
     PARAMETER_BUMP, PARAMETER_COLOR, PARAMETER_EMISSION, PARAMETER_MASK, PARAMETER_METALLIC, PARAMETER_NORMAL, PARAMETER_OPACITY,
     PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U, PARAMETER_ROUGHNESS_V, PARAMETER_SPECULAR_COLOR, PARAMETER_WEIGHT,
     PATTERN_CHECKER, PATTERN_GRADIENT, PATTERN_NOISE, PATTERN_ZONE_PLATE, TEXEL_FLOAT, TEXEL_LINEAR8, TEXEL_SRGB8,
@@ -41,6 +41,9 @@ pub fn bind_textures(material: &scene::Material, baked: &mut Material, data: &mu
     }
     (baked.first_texture, baked.texture_count) = (data.textures.len() as u32, count as u32);
     for binding in &material.textures {
+        if matches!(binding.parameter, Parameter::RoughnessU | Parameter::RoughnessV) {
+            baked.flags |= MATERIAL_ANISOTROPIC;
+        }
         let record = bound(binding, data.textures[binding.texture.0 as usize]);
         data.textures.push(record);
     }

@@ -2,7 +2,8 @@
 
 use crate::layout::{
     CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, Material, PARAMETER_COLOR, PARAMETER_EMISSION, PARAMETER_MASK,
-    PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_SPECULAR_COLOR,
+    PARAMETER_METALLIC, PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U, PARAMETER_ROUGHNESS_V,
+    PARAMETER_SPECULAR_COLOR, PARAMETER_WEIGHT,
 };
 use crate::shading::math::{clamp_, max_};
 use glam::{Vec3, Vec4};
@@ -33,10 +34,17 @@ pub fn apply_parameter(material: Material, parameter: u32, texel: Vec3, scale: f
         PARAMETER_COLOR => result.color *= value,
         PARAMETER_SPECULAR_COLOR => result.specular_color *= value,
         PARAMETER_EMISSION => result.emission *= value,
-        PARAMETER_ROUGHNESS => {
-            result.m0 = max_(material.m0 * value.x, ALPHA_LEAST);
-            result.m1 = max_(material.m1 * value.x, ALPHA_LEAST);
+        PARAMETER_ROUGHNESS | PARAMETER_ROUGHNESS_U | PARAMETER_ROUGHNESS_V => {
+            if parameter != PARAMETER_ROUGHNESS_V {
+                result.m0 = max_(material.m0 * value.x, ALPHA_LEAST);
+                result.m1 = max_(material.m1 * value.x, ALPHA_LEAST);
+            }
+            if parameter != PARAMETER_ROUGHNESS_U {
+                result.m0_v = max_(material.m0_v * value.x, ALPHA_LEAST);
+                result.m1_v = max_(material.m1_v * value.x, ALPHA_LEAST);
+            }
         }
+        PARAMETER_METALLIC | PARAMETER_WEIGHT => result.extra = clamp_(material.extra * value.x, 0.0, 1.0),
         // k_t is what is not covered.
         PARAMETER_OPACITY => result.k_t = 1.0 - (1.0 - material.k_t) * clamp_(value.x, 0.0, 1.0),
         PARAMETER_MASK => result.k_t = if (1.0 - material.k_t) * texel.x >= scale { 0.0 } else { 1.0 },

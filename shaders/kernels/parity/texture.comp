@@ -101,9 +101,12 @@ void main() {
         m.m0 = 0.25;
         m.m1 = 0.5;
         m.k_t = 0.25;
+        m.m0_v = 0.125;
+        m.m1_v = 0.375;
+        m.extra = 0.75;
         Material applied = apply_parameter(m, argument_u(3u), v, argument(4u));
         result4(0u, vec4(applied.color, applied.specular_color.x));
-        result3(4u, vec3(applied.emission.y, applied.m0, applied.k_t));
+        result3(4u, vec3(applied.emission.y, applied.m0 + applied.m1_v, applied.k_t + applied.extra));
         break;
     }
     }

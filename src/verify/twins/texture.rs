@@ -147,10 +147,13 @@ pub const FAMILY: Family = Family {
                     m0: 0.25,
                     m1: 0.5,
                     k_t: 0.25,
+                    m0_v: 0.125,
+                    m1_v: 0.375,
+                    extra: 0.75,
                     ..Material::default()
                 };
                 let applied = apply_parameter(material, i.u(3), i.v3(0), i.f(4));
-                o.v3(applied.color).f(applied.specular_color.x).f(applied.emission.y).f(applied.m0).f(applied.k_t);
+                o.v3(applied.color).f(applied.specular_color.x).f(applied.emission.y).f(applied.m0 + applied.m1_v).f(applied.k_t + applied.extra);
             },
         },
     ],
