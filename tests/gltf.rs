@@ -42,6 +42,7 @@ fn check_scene(scene: &Scene) {
         let texels = match &texture.data {
             TextureData::Srgb8(t) | TextureData::Linear8(t) => t.len(),
             TextureData::Float(t) => t.len(),
+            TextureData::Pattern(_) => panic!("a file holds no pattern"),
         };
         assert_eq!(texels as u64, u64::from(texture.width) * u64::from(texture.height));
     }

@@ -30,6 +30,9 @@ layout(constant_id = 10) const bool SCENE_HAS_SPHERES = true;
 layout(constant_id = 11) const bool SCENE_HAS_AOVS = true;
 // Objects shaded flat or by Gouraud's method.
 layout(constant_id = 12) const bool SCENE_HAS_FACETS = true;
+layout(constant_id = 13) const bool SCENE_HAS_TEXTURES = true;
+layout(constant_id = 14) const bool SCENE_HAS_TEXTURED_LIGHTS = true;
+layout(constant_id = 15) const bool SCENE_HAS_ENVIRONMENT = true;
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };

@@ -29,7 +29,8 @@ Spectrum textured_radiance(Emitter emitter, vec3 position, vec2 u, LightSample l
     vec2 b = square_to_uniform_triangle(u);
     Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0u, 0u);
     Hit hit = Hit(lit.distance, b.x, b.y, emitter.instance, emitter.primitive, 0u, 0u, 0u);
-    return spectrum_from_rgb(emission_material(material_at(surface_at(ray, hit))));
+    Surface surface = surface_at(ray, hit);
+    return spectrum_from_rgb(emission_material(material_at(lit.wi, hit, surface)));
 }
 
 // Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1.
@@ -52,7 +53,7 @@ LightSample sample_emitter(Emitter emitter, Surface surface, vec2 u) {
     } else if (emitter.instance != surface.instance || emitter.primitive != surface.primitive) {
         lit = sample_triangle_light(emitter, position, u);
     }
-    if ((emitter.flags & EMITTER_TEXTURED) != 0u && lit.pdf_solid_angle > 0.0) {
+    if (SCENE_HAS_TEXTURED_LIGHTS && (emitter.flags & EMITTER_TEXTURED) != 0u && lit.pdf_solid_angle > 0.0) {
         lit.radiance = textured_radiance(emitter, position, u, lit) * rcp(lit.pdf_solid_angle);
     }
     return lit;

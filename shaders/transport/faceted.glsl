@@ -38,7 +38,7 @@ vec3 to_camera(vec3 position) {
 ShadingPoint shading_point(Ray ray, Hit hit, Surface here, uint flags, uint index) {
     if (!faceted(flags)) {
         vec3 straight = -ray.direction;
-        return ShadingPoint(here, facing_normal(here, straight), straight, 1.0, 0u);
+        return ShadingPoint(here, hit, facing_normal(here, straight), straight, 1.0, 0u);
     }
     Hit at = hit;
     float share = 1.0;
@@ -69,7 +69,7 @@ ShadingPoint shading_point(Ray ray, Hit hit, Surface here, uint flags, uint inde
         surface.primitive = INVALID;
         surface.error *= CORNER_LIFT;
     }
-    return ShadingPoint(surface, normal, wo, share, index * DITHER_CORNER);
+    return ShadingPoint(surface, at, normal, wo, share, index * DITHER_CORNER);
 }
 
 #endif

@@ -20,6 +20,8 @@ const float SHADOW_END = 0.9999;
 // Where a hit is shaded: at itself, or where `faceted` puts it.
 struct ShadingPoint {
     Surface surface;
+    // Where on its triangle that is.
+    Hit hit;
     // Unit shading normal on the viewer's side.
     vec3 normal;
     // Unit, to the viewer.

@@ -25,7 +25,7 @@ void shade(PathState incoming, Hit hit) {
     SampleKey key = sample_key(path.pixel, path.sample_index, path.path_id);
     if (hit.instance == INVALID) {
         if (!(straight && header.hide_background != 0u)) {
-            if (header.integrator == INTEGRATOR_PATH) {
+            if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
                 shade_escape(path, key);
                 return;
             }
@@ -41,7 +41,7 @@ void shade(PathState incoming, Hit hit) {
         return;
     }
     Surface surface = surface_at(path.ray, hit);
-    Material material = material_at(surface);
+    Material material = material_at(path.ray.direction, hit, surface);
     if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
@@ -56,7 +56,7 @@ void shade(PathState incoming, Hit hit) {
         ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
         Material material_there = material;
         if (faceted(flags)) {
-            material_there = material_at(point.surface);
+            material_there = material_at(-point.wo, point.hit, point.surface);
         }
         shade_local(path, key, point, material_there);
     }

@@ -1,7 +1,9 @@
 //! The baked scene: flat arrays, ready to upload or to trace.
 
 use super::BakeError;
-use crate::layout::{Emitter, EnvironmentMap, Face, Instance, Light, Material, Node, SceneHeader, SceneView, Texture, Triangle, Vertex};
+use crate::layout::{
+    Emitter, EnvironmentMap, Face, Instance, Light, Material, Node, SceneHeader, SceneView, Texture, Triangle, Vertex,
+};
 use serde::{Deserialize, Serialize};
 
 /// One array of the data heap, as it is uploaded.

@@ -8,7 +8,7 @@ use super::{BakeError, SceneData};
 use crate::layout::{
     EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_ONE_SIDED, EMITTER_SPHERE, EMITTER_TEXTURED, EMITTER_TRIANGLE, Emitter,
     INVALID, Instance, KIND_SPHERE, LIGHT_DIRECTIONAL, LIGHT_SPOT, Light, MATERIAL_EMIT_ONE_SIDED, MODEL_EMISSIVE,
-    Material,
+    Material, PARAMETER_COLOR, PARAMETER_EMISSION,
 };
 use crate::scene::{Background, Scene};
 use glam::{DMat3, DVec3, Vec3, Vec4};
@@ -124,12 +124,7 @@ fn emission(material: &Material) -> Vec3 {
     material.emission + if material.model == MODEL_EMISSIVE { material.color } else { Vec3::ZERO }
 }
 
-fn collect_instance(
-    data: &SceneData,
-    index: usize,
-    primitives: &dyn Fn(usize) -> Vec<u32>,
-    all: &mut Collection,
-) {
+fn collect_instance(data: &SceneData, index: usize, primitives: &dyn Fn(usize) -> Vec<u32>, all: &mut Collection) {
     let instance = &data.instances[index];
     let first = all.emitters.len();
     let glows = |id: u32| luminance(emission(&data.materials[id as usize]).as_dvec3()) > 0.0;
@@ -137,7 +132,14 @@ fn collect_instance(
         let sided = if (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0 { EMITTER_ONE_SIDED } else { 0 };
         sided | if textured { EMITTER_TEXTURED } else { 0 }
     };
-    let textured = |material: &Material| material.model == MODEL_EMISSIVE && material.color_texture != INVALID;
+    let textured = |material: &Material| {
+        let (first, count) = (material.first_texture as usize, material.texture_count as usize);
+        data.textures[first..first + count].iter().any(|texture| match texture.parameter {
+            PARAMETER_EMISSION => true,
+            PARAMETER_COLOR => material.model == MODEL_EMISSIVE,
+            _ => false,
+        })
+    };
     let mut power = 0.0;
     let sides = |material: &Material| if (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0 { 1.0 } else { 2.0 };
     if instance.kind == KIND_SPHERE {

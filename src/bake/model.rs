@@ -3,9 +3,7 @@
 use super::BakeError;
 use super::albedo::{conductor_table, constant_table, diffuse_reflectance, kelemen_table, plastic_table};
 use crate::layout::*;
-use crate::scene::{
-    self, Distribution, Fresnel, Lobe, Masking, Model, Parameter, Transparency, WardNormalisation,
-};
+use crate::scene::{self, Distribution, Fresnel, Lobe, Masking, Model, Transparency, WardNormalisation};
 use glam::Vec3;
 
 /// An index closer to 1 than this would leave rough glass without facets that refract.
@@ -16,11 +14,7 @@ const BLEND_LEAVES: usize = MAX_LEAVES as usize;
 const BLEND_DEPTH: usize = 8;
 
 /// One material; its table is appended to `tables`. `traced`: for path tracing, which wants reciprocal models. A blend's materials are found by `bake_blends` later.
-pub fn bake_material(
-    material: &scene::Material,
-    traced: bool,
-    tables: &mut Vec<f32>,
-) -> Result<Material, BakeError> {
+pub fn bake_material(material: &scene::Material, traced: bool, tables: &mut Vec<f32>) -> Result<Material, BakeError> {
     let mut baked = Material {
         color: material.color,
         specular_color: material.specular_color,
@@ -29,7 +23,6 @@ pub fn bake_material(
         k_s: material.k_s,
         k_r: material.k_r,
         eta: Vec3::ONE,
-        color_texture: material.texture(Parameter::Color).map_or(INVALID, |id| id.0),
         emission: material.emission,
         table: INVALID,
         ..Material::default()
@@ -269,4 +262,3 @@ pub fn casts_shadow(material: &scene::Material, traced: bool) -> bool {
     };
     material.casts_shadow.unwrap_or(traced || !pane)
 }
-

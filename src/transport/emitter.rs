@@ -5,9 +5,8 @@ use super::area_light::{
 };
 use super::textured::material_at;
 use crate::layout::{
-    EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_SPHERE, EMITTER_TEXTURED, Emitter, Hit, KIND_SPHERE,
-    Ray, SceneView, T_INFINITE, load_instance, load_light, load_material,
-    load_table,
+    EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_SPHERE, EMITTER_TEXTURED, Emitter, Hit, KIND_SPHERE, Ray, SceneView,
+    T_INFINITE, load_instance, load_light, load_material, load_table,
 };
 use crate::shading::environment::sample_environment;
 use crate::shading::light::{LightSample, no_light, sample_light};
@@ -42,7 +41,8 @@ fn textured_radiance(scene: &SceneView, emitter: &Emitter, position: Vec3, u: Ve
         primitive: emitter.primitive,
         ..Hit::default()
     };
-    spectrum_from_rgb(emission_material(&material_at(scene, &surface_at(scene, &ray, &hit))))
+    let mut surface = surface_at(scene, &ray, &hit);
+    spectrum_from_rgb(emission_material(&material_at(scene, lit.wi, &hit, &mut surface)))
 }
 
 /// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1.

@@ -38,7 +38,7 @@ pub fn to_camera(scene: &SceneView, position: Vec3) -> Vec3 {
 pub fn shading_point(scene: &SceneView, ray: &Ray, hit: &Hit, here: &Surface, flags: u32, index: u32) -> ShadingPoint {
     if !faceted(flags) {
         let wo = -ray.direction;
-        return ShadingPoint { surface: *here, normal: facing_normal(here, wo), wo, share: 1.0, dither: 0 };
+        return ShadingPoint { surface: *here, hit: *hit, normal: facing_normal(here, wo), wo, share: 1.0, dither: 0 };
     }
     let mut at = *hit;
     let mut share = 1.0;
@@ -75,5 +75,5 @@ pub fn shading_point(scene: &SceneView, ray: &Ray, hit: &Hit, here: &Surface, fl
         surface.primitive = INVALID;
         surface.error *= CORNER_LIFT;
     }
-    ShadingPoint { surface, normal, wo, share, dither: index * DITHER_CORNER }
+    ShadingPoint { surface, hit: at, normal, wo, share, dither: index * DITHER_CORNER }
 }

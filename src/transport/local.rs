@@ -2,8 +2,8 @@
 
 use super::{DITHER_LIGHT, DITHER_SURFACE, LOBE_THROUGH, Queues, add_contribution, push_path, push_shadow};
 use crate::layout::{
-    Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_FILTERED, MATERIAL_ONE_SIDED, MATERIAL_TRANSMISSIVE,
-    Material, PathState, SceneView, ShadowRay, load_light,
+    Hit, Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_FILTERED, MATERIAL_ONE_SIDED,
+    MATERIAL_TRANSMISSIVE, Material, PathState, SceneView, ShadowRay, load_light,
 };
 use crate::shading::frame::{Frame, frame_from_normal, frame_from_tangent, to_local};
 use crate::shading::light::sample_light;
@@ -24,6 +24,8 @@ pub const SHADOW_END: f32 = 0.9999;
 #[derive(Clone, Copy, Debug)]
 pub struct ShadingPoint {
     pub surface: Surface,
+    /// Where on its triangle that is.
+    pub hit: Hit,
     /// Unit shading normal on the viewer's side.
     pub normal: Vec3,
     /// Unit, to the viewer.

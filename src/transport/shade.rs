@@ -47,8 +47,8 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     if spectrum_max(path.throughput) < THROUGHPUT_MIN {
         return;
     }
-    let surface = surface_at(scene, &path.ray, hit);
-    let material = material_at(scene, &surface);
+    let mut surface = surface_at(scene, &path.ray, hit);
+    let material = material_at(scene, path.ray.direction, hit, &mut surface);
     if scene.header.aovs != 0 && path.path_id == 0 {
         let albedo = albedo_material(&material);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
@@ -60,8 +60,9 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     }
     let flags = load_instance(scene, hit.instance).flags;
     for index in 0..shading_points(flags) {
-        let point = shading_point(scene, &path.ray, hit, &surface, flags, index);
-        let material_there = if faceted(flags) { material_at(scene, &point.surface) } else { material };
+        let mut point = shading_point(scene, &path.ray, hit, &surface, flags, index);
+        let material_there =
+            if faceted(flags) { material_at(scene, -point.wo, &point.hit, &mut point.surface) } else { material };
         shade_local(scene, &path, key, &point, &material_there, queues);
     }
     shade_through(scene, &path, &surface, &material, queues);

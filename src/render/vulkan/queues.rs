@@ -8,7 +8,9 @@ use super::plan::QueuePlan;
 use super::record::Recorder;
 use super::scene::SceneBuffers;
 use crate::bake::SceneData;
-use crate::layout::{Batch, Control, DispatchArguments, INSTANCE_FLAT, INSTANCE_GOURAUD, KIND_SPHERE};
+use crate::layout::{
+    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, KIND_SPHERE,
+};
 use crate::shaders;
 use std::mem::offset_of;
 
@@ -45,9 +47,11 @@ const NAMES: Stages<&str> = Stages {
 };
 
 /// Specialisation constants that say what the scene uses (`shaders/kernels/bindings.glsl`).
-fn scene_constants(data: &SceneData) -> [(u32, u32); 8] {
+fn scene_constants(data: &SceneData) -> [(u32, u32); 11] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
     let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
+    let textures = data.materials.iter().any(|material| material.texture_count > 0);
+    let textured_lights = data.emitters.iter().any(|emitter| emitter.flags & EMITTER_TEXTURED != 0);
     let models = data.materials.iter().fold(0, |mask, material| mask | 1 << material.model);
     [
         (5, data.stack_depth.max(1)),
@@ -58,6 +62,9 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 8] {
         (10, u32::from(spheres)),
         (11, data.header.aovs),
         (12, u32::from(facets)),
+        (13, u32::from(textures)),
+        (14, u32::from(textured_lights)),
+        (15, data.header.environment_maps.min(1)),
     ]
 }
 

@@ -183,5 +183,7 @@ fn mean_of(data: &TextureData) -> [f64; 4] {
         TextureData::Float(texels) => {
             std::array::from_fn(|lane| texels.iter().map(|t| f64::from(t[lane])).sum::<f64>() / texels.len() as f64)
         }
+        // No file holds one.
+        TextureData::Pattern(_) => [1.0; 4],
     }
 }
