@@ -7,6 +7,7 @@
 
 // Dimensions of a sample's random numbers: pairs drawn for the named purpose.
 const uint DIMENSION_FILTER = 0u;
+const uint DIMENSION_LEAF = 32u;
 // Dither of contributions: emission and ambient, background, alpha; light i takes `DITHER_LIGHT + i`.
 const uint DITHER_SURFACE = 0x10000000u;
 const uint DITHER_BACKGROUND = 0x10000001u;

@@ -10,6 +10,7 @@ pub mod filter;
 mod geometry;
 mod instance;
 mod light;
+mod measured;
 mod model;
 mod scene;
 pub mod srgb;
@@ -31,9 +32,6 @@ pub enum BakeError {
     /// Cook-Torrance has one or two lobes.
     #[error("material \"{name}\" has {count} lobes; one or two are possible")]
     Lobes { name: String, count: usize },
-    /// A model whose shading has not landed yet.
-    #[error("material \"{name}\": its model cannot be drawn yet")]
-    Unfinished { name: String },
     /// A blend of blends of blends.
     #[error("material \"{name}\" blends more than 8 materials, or itself")]
     Blend { name: String },

@@ -51,7 +51,7 @@ fn check_count(what: &'static str, count: usize) -> Result<(), BakeError> {
 /// Bakes all materials, and one more where an object or face names none. Returns the id of that one.
 fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, BakeError> {
     for material in &scene.materials {
-        data.materials.push(bake_material(material, &mut data.tables)?);
+        data.materials.push(bake_material(material, &scene.tables, &mut data.tables)?);
     }
     let nameless = |object: &Object| match object.geometry {
         Geometry::Sphere => object.material.is_none(),
@@ -59,7 +59,7 @@ fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, Bak
     };
     let default = MaterialId(scene.materials.len() as u32);
     if scene.objects.iter().any(nameless) {
-        data.materials.push(bake_material(&Material::grey("default"), &mut data.tables)?);
+        data.materials.push(bake_material(&Material::grey("default"), &[], &mut data.tables)?);
     }
     bake_blends(&scene.materials, &mut data.materials)?;
     check_count("table entries", data.tables.len())?;

@@ -7,6 +7,7 @@
 
 pub mod film;
 pub mod generate;
+pub mod leaf;
 pub mod local;
 pub mod shade;
 pub mod whitted;
@@ -16,6 +17,7 @@ use glam::{Vec3, Vec4};
 
 /// Dimensions of a sample's random numbers: pairs drawn for the named purpose.
 pub const DIMENSION_FILTER: u32 = 0;
+pub const DIMENSION_LEAF: u32 = 32;
 /// Dither of contributions: emission and ambient, background, alpha; light i takes `DITHER_LIGHT + i`.
 pub const DITHER_SURFACE: u32 = 0x1000_0000;
 pub const DITHER_BACKGROUND: u32 = 0x1000_0001;
