@@ -10,6 +10,7 @@
 #include "trace/surface.glsl"
 #include "transport/faceted.glsl"
 #include "transport/generate.glsl"
+#include "transport/leaf.glsl"
 #include "transport/local.glsl"
 #include "transport/path.glsl"
 #include "transport/textured.glsl"
@@ -41,11 +42,12 @@ void shade(PathState incoming, Hit hit) {
         return;
     }
     Surface surface = surface_at(path.ray, hit);
-    Material material = material_at(path.ray.direction, hit, surface);
+    uint named = surface.material;
+    Material material = leaf_material(path.ray.direction, hit, key, surface);
     if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
-        add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
+        add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
     if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
         shade_path(path, key, hit, surface, material);
@@ -56,6 +58,7 @@ void shade(PathState incoming, Hit hit) {
         ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
         Material material_there = material;
         if (faceted(flags)) {
+            point.surface.material = surface.material;
             material_there = material_at(-point.wo, point.hit, point.surface);
         }
         shade_local(path, key, point, material_there);

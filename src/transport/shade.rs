@@ -2,6 +2,7 @@
 
 use super::faceted::{faceted, shading_point, shading_points};
 use super::generate::sample_key;
+use super::leaf::leaf_material;
 use super::local::{shade_local, shade_through};
 use super::path::{shade_escape, shade_path};
 use super::textured::material_at;
@@ -48,11 +49,12 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
         return;
     }
     let mut surface = surface_at(scene, &path.ray, hit);
-    let material = material_at(scene, path.ray.direction, hit, &mut surface);
+    let named = surface.material;
+    let material = leaf_material(scene, path.ray.direction, hit, key, &mut surface);
     if scene.header.aovs != 0 && path.path_id == 0 {
         let albedo = albedo_material(&material);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
-        add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
+        add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
     if scene.header.integrator == INTEGRATOR_PATH {
         shade_path(scene, &path, key, hit, &surface, &material, queues);
@@ -61,8 +63,11 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     let flags = load_instance(scene, hit.instance).flags;
     for index in 0..shading_points(flags) {
         let mut point = shading_point(scene, &path.ray, hit, &surface, flags, index);
-        let material_there =
-            if faceted(flags) { material_at(scene, -point.wo, &point.hit, &mut point.surface) } else { material };
+        let mut material_there = material;
+        if faceted(flags) {
+            point.surface.material = surface.material;
+            material_there = material_at(scene, -point.wo, &point.hit, &mut point.surface);
+        }
         shade_local(scene, &path, key, &point, &material_there, queues);
     }
     shade_through(scene, &path, &surface, &material, queues);

@@ -4,6 +4,7 @@ mod bounds;
 pub mod builtin;
 pub mod gltf;
 pub mod image;
+mod merl;
 mod meter;
 pub mod obj;
 pub mod ply;
