@@ -9,6 +9,7 @@
 #include "shading/spectrum.glsl"
 #include "trace/surface.glsl"
 #include "transport/generate.glsl"
+#include "transport/leaf.glsl"
 #include "transport/local.glsl"
 #include "transport/path.glsl"
 #include "transport/textured.glsl"
@@ -40,11 +41,13 @@ void shade(PathState incoming, Hit hit) {
         return;
     }
     Surface surface = surface_at(path.ray, hit);
+    uint named = surface.material;
+    surface.material = leaf_material(named, key);
     Material material = material_at(surface);
     if (header.aovs != 0u && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
-        add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
+        add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
     if (header.integrator == INTEGRATOR_PATH) {
         shade_path(path, key, hit, surface, material);

@@ -13,6 +13,7 @@ pub mod filter;
 mod geometry;
 mod instance;
 mod light;
+mod measured;
 mod model;
 mod scene;
 pub mod srgb;
@@ -34,9 +35,6 @@ pub enum BakeError {
     /// Cook-Torrance has one or two lobes.
     #[error("material \"{name}\" has {count} lobes; one or two are possible")]
     Lobes { name: String, count: usize },
-    /// A model whose shading has not landed yet.
-    #[error("material \"{name}\": its model cannot be drawn yet")]
-    Unfinished { name: String },
     /// More than a random number can tell apart.
     #[error("{count} triangles and lights glow; at most {most} are possible under direct and path")]
     Emitters { count: usize, most: usize },

@@ -2,9 +2,10 @@
 
 use super::BakeError;
 use super::albedo::{conductor_table, constant_table, diffuse_reflectance, kelemen_table, plastic_table};
+use super::measured::measured_table;
 use crate::layout::*;
 use crate::scene::{
-    self, Distribution, Fresnel, Lobe, Masking, Model, Parameter, Transparency, WardNormalisation,
+    self, Distribution, Fresnel, Lobe, Masking, Model, Parameter, Principled, Table, Transparency, WardNormalisation,
 };
 use glam::Vec3;
 
@@ -15,10 +16,12 @@ const BLEND_LEAVES: usize = MAX_LEAVES as usize;
 /// Blends within blends, at most.
 const BLEND_DEPTH: usize = 8;
 
-/// One material; its table is appended to `tables`. `traced`: for path tracing, which wants reciprocal models. A blend's materials are found by `bake_blends` later.
+/// One material; its table is appended to `tables`. `traced`: for path tracing, which wants reciprocal models. A blend's
+/// materials are found by `bake_blends` later.
 pub fn bake_material(
     material: &scene::Material,
     traced: bool,
+    measured: &[Table],
     tables: &mut Vec<f32>,
 ) -> Result<Material, BakeError> {
     let mut baked = Material {
@@ -40,7 +43,7 @@ pub fn bake_material(
     if !material.emission_two_sided {
         baked.flags |= MATERIAL_EMIT_ONE_SIDED;
     }
-    bake_model(material, traced, &mut baked, tables)?;
+    bake_model(material, traced, measured, &mut baked, tables)?;
     match material.transparency {
         None if matches!(material.model, Model::Null) => baked.k_t = 1.0,
         // What does not cover lets everything through (`path` draws it at random, the others as a branch).
@@ -58,6 +61,7 @@ pub fn bake_material(
 fn bake_model(
     material: &scene::Material,
     traced: bool,
+    measured: &[Table],
     baked: &mut Material,
     tables: &mut Vec<f32>,
 ) -> Result<(), BakeError> {
@@ -152,8 +156,10 @@ fn bake_model(
             baked.flags |= if *nonlinear { MATERIAL_NONLINEAR } else { 0 };
             plastic_table(baked, tables);
         }
-        Model::Principled(_) | Model::Measured { .. } => {
-            return Err(BakeError::Unfinished { name: material.name.clone() });
+        Model::Principled(principled) => bake_principled(principled, baked, tables),
+        Model::Measured { table } => {
+            baked.model = MODEL_MEASURED;
+            measured_table(&measured[table.0 as usize], baked, tables);
         }
         Model::Null => {
             baked.model = MODEL_NULL;
@@ -218,6 +224,28 @@ fn bake_fresnel(fresnel: Fresnel, baked: &mut Material) {
             baked.flags |= MATERIAL_SCHLICK;
         }
     }
+}
+
+/// Roughness, metallic and index are in the record, where textures reach them; the rest in the table.
+fn bake_principled(principled: &Principled, baked: &mut Material, tables: &mut Vec<f32>) {
+    let p = principled;
+    baked.model = MODEL_PRINCIPLED;
+    (baked.m0, baked.extra) = (p.roughness, p.metallic);
+    baked.eta = Vec3::splat(p.eta.max(1.0 + ETA_LEAST));
+    baked.flags |= if p.anisotropic == 0.0 { 0 } else { MATERIAL_ANISOTROPIC };
+    baked.flags |= if p.spec_trans == 0.0 { 0 } else { MATERIAL_TRANSMISSIVE };
+    baked.table = tables.len() as u32;
+    // The order of `shading/principled`.
+    tables.extend([
+        p.anisotropic,
+        p.spec_trans,
+        p.spec_tint,
+        p.sheen,
+        p.sheen_tint,
+        p.flatness,
+        p.clearcoat,
+        p.clearcoat_gloss,
+    ]);
 }
 
 /// Puts copies of each blend's two materials one after the other at the end of `baked`, where the blend's `table` says.

@@ -1,6 +1,7 @@
 //! What becomes of a ray once its hit is known.
 
 use super::generate::sample_key;
+use super::leaf::leaf_material;
 use super::local::shade_local;
 use super::path::{shade_escape, shade_path};
 use super::textured::material_at;
@@ -46,12 +47,14 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     if spectrum_max(path.throughput) < THROUGHPUT_MIN {
         return;
     }
-    let surface = surface_at(scene, &path.ray, hit);
+    let mut surface = surface_at(scene, &path.ray, hit);
+    let named = surface.material;
+    surface.material = leaf_material(scene, named, key);
     let material = material_at(scene, &surface);
     if scene.header.aovs != 0 && path.path_id == 0 {
         let albedo = albedo_material(&material);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
-        add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
+        add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
     if scene.header.integrator == INTEGRATOR_PATH {
         shade_path(scene, &path, key, hit, &surface, &material, queues);
