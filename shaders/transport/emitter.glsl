@@ -30,7 +30,8 @@ Spectrum textured_radiance(Emitter emitter, vec3 position, vec2 u, LightSample l
     Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0u, 0u);
     Hit hit = Hit(lit.distance, b.x, b.y, emitter.instance, emitter.primitive, 0u, 0u, 0u);
     Surface surface = surface_at(ray, hit);
-    return spectrum_from_rgb(emission_material(material_at(lit.wi, hit, surface)));
+    Material material = material_at(lit.wi, hit, surface);
+    return spectrum_from_rgb(emission_material(material) * own_weight(material));
 }
 
 // Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1.
@@ -69,8 +70,9 @@ bool casts_shadow(Emitter emitter) {
 float pdf_emitter(vec3 origin, vec3 direction, float t, Surface surface) {
     Instance instance = load_instance(surface.instance);
     // Without textures: what bake made the choice by.
-    float luminance = spectrum_luminance(spectrum_from_rgb(emission_material(load_material(surface.material))));
-    float density = instance.light_density * luminance;
+    Material material = load_material(surface.material);
+    Spectrum shown = spectrum_from_rgb(emission_material(material) * own_weight(material));
+    float density = instance.light_density * spectrum_luminance(shown);
     if (surface.kind == KIND_SPHERE) {
         vec3 along = transform_vector(instance.to_object, direction);
         vec3 start = transform_point(instance.to_object, origin);

@@ -73,11 +73,6 @@ vec3 emitted(Surface surface, Material material, vec3 wo) {
     return emission_material(material);
 }
 
-// How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
-float own_weight(Material material) {
-    return (material.flags & MATERIAL_FILTERED) != 0u ? 1.0 : 1.0 - material.k_t;
-}
-
 // What the surface adds for one light, before any shadow: throughput * eval * radiance.
 Spectrum light_contribution(Spectrum weight, Material material, Frame frame, vec3 wo, vec3 wi, Spectrum radiance) {
     return weight * eval_material(material, to_local(frame, wo), to_local(frame, wi)) * radiance;

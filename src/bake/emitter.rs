@@ -7,10 +7,11 @@ use super::environment::{bake_environment, luminance};
 use super::{BakeError, SceneData};
 use crate::layout::{
     EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_ONE_SIDED, EMITTER_SPHERE, EMITTER_TEXTURED, EMITTER_TRIANGLE, Emitter,
-    INVALID, Instance, KIND_SPHERE, LIGHT_DIRECTIONAL, LIGHT_SPOT, Light, MATERIAL_EMIT_ONE_SIDED, MODEL_EMISSIVE,
-    Material, PARAMETER_COLOR, PARAMETER_EMISSION,
+    INVALID, Instance, KIND_SPHERE, LIGHT_DIRECTIONAL, LIGHT_SPOT, Light, MATERIAL_EMIT_ONE_SIDED, MODEL_BLEND,
+    MODEL_EMISSIVE, Material, PARAMETER_COLOR, PARAMETER_EMISSION,
 };
 use crate::scene::{Background, Scene};
+use crate::shading::material::{emission_material, own_weight};
 use glam::{DMat3, DVec3, Vec3, Vec4};
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -119,9 +120,10 @@ fn distribute(mut all: Collection, data: &mut SceneData) {
     data.emitters = all.emitters;
 }
 
-/// What a material sends out, without its textures.
+/// What a material sends out, without its textures, as far as it covers. A blend shows its leaves; what they emit is found
+/// by chance only.
 fn emission(material: &Material) -> Vec3 {
-    material.emission + if material.model == MODEL_EMISSIVE { material.color } else { Vec3::ZERO }
+    if material.model == MODEL_BLEND { Vec3::ZERO } else { emission_material(material) * own_weight(material) }
 }
 
 fn collect_instance(data: &SceneData, index: usize, primitives: &dyn Fn(usize) -> Vec<u32>, all: &mut Collection) {

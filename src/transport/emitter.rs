@@ -10,7 +10,7 @@ use crate::layout::{
 };
 use crate::shading::environment::sample_environment;
 use crate::shading::light::{LightSample, no_light, sample_light};
-use crate::shading::material::emission_material;
+use crate::shading::material::{emission_material, own_weight};
 use crate::shading::math::{dot3, rcp};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_luminance};
 use crate::shading::warp::square_to_uniform_triangle;
@@ -42,7 +42,8 @@ fn textured_radiance(scene: &SceneView, emitter: &Emitter, position: Vec3, u: Ve
         ..Hit::default()
     };
     let mut surface = surface_at(scene, &ray, &hit);
-    spectrum_from_rgb(emission_material(&material_at(scene, lit.wi, &hit, &mut surface)))
+    let material = material_at(scene, lit.wi, &hit, &mut surface);
+    spectrum_from_rgb(emission_material(&material) * own_weight(&material))
 }
 
 /// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1.
@@ -81,8 +82,9 @@ pub fn casts_shadow(scene: &SceneView, emitter: &Emitter) -> bool {
 pub fn pdf_emitter(scene: &SceneView, origin: Vec3, direction: Vec3, t: f32, surface: &Surface) -> f32 {
     let instance = load_instance(scene, surface.instance);
     // Without textures: what bake made the choice by.
-    let luminance = spectrum_luminance(spectrum_from_rgb(emission_material(&load_material(scene, surface.material))));
-    let density = instance.light_density * luminance;
+    let material = load_material(scene, surface.material);
+    let shown = spectrum_from_rgb(emission_material(&material) * own_weight(&material));
+    let density = instance.light_density * spectrum_luminance(shown);
     if surface.kind == KIND_SPHERE {
         let along = transform_vector(instance.to_object, direction);
         let start = transform_point(instance.to_object, origin);

@@ -7,7 +7,7 @@ use crate::layout::{
 };
 use crate::shading::frame::{Frame, frame_from_normal, frame_from_tangent, to_local};
 use crate::shading::light::sample_light;
-use crate::shading::material::{ambient_material, emission_material, eval_material, is_delta};
+use crate::shading::material::{ambient_material, emission_material, eval_material, is_delta, own_weight};
 use crate::shading::math::{dot3, normalize3};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_max, spectrum_zero};
@@ -75,11 +75,6 @@ pub fn emitted(surface: &Surface, material: &Material, wo: Vec3) -> Vec3 {
         return Vec3::ZERO;
     }
     emission_material(material)
-}
-
-/// How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
-pub fn own_weight(material: &Material) -> f32 {
-    if (material.flags & MATERIAL_FILTERED) != 0 { 1.0 } else { 1.0 - material.k_t }
 }
 
 /// What the surface adds for one light, before any shadow: throughput * eval * radiance.

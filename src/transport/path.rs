@@ -8,7 +8,7 @@
 //! Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit.
 
 use super::emitter::{casts_shadow, choose_emitter, pdf_emitter, sample_emitter};
-use super::local::{SHADOW_END, emitted, is_hidden_back, own_weight, shading_frame};
+use super::local::{SHADOW_END, emitted, is_hidden_back, shading_frame};
 use super::weight::{consistent, power_heuristic, survival};
 use super::{
     DIMENSION_BSDF, DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, DIMENSION_LOBE, DIMENSION_PANE, DIMENSION_ROULETTE,
@@ -21,7 +21,7 @@ use crate::layout::{
 use crate::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
 use crate::shading::environment::{background, pdf_environment};
 use crate::shading::frame::{Frame, to_local, to_world};
-use crate::shading::material::{eval_material, is_delta, pdf_material, sample_material};
+use crate::shading::material::{eval_material, is_delta, own_weight, pdf_material, sample_material};
 use crate::shading::math::{div, rcp};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, sample_1d, sample_2d};
 use crate::shading::spectrum::{Spectrum, spectrum_flush, spectrum_from_rgb, spectrum_max};

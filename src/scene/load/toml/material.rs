@@ -93,6 +93,7 @@ fn read_material(
         casts_shadow: table.boolean("casts_shadow")?,
         opacity: table.float("opacity")?.unwrap_or(1.0),
         two_sided: table.boolean("two_sided")?.unwrap_or(true),
+        emission_two_sided: table.boolean("emission_two_sided")?.unwrap_or(true),
         model,
         ..Material::grey(name)
     })
