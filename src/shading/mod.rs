@@ -27,6 +27,7 @@ pub mod coordinate;
 pub mod delta;
 pub mod dielectric;
 pub mod distribution;
+pub mod environment;
 pub mod filter;
 pub mod footprint;
 pub mod frame;

@@ -7,7 +7,7 @@ use super::reader::{Reader, Result};
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::{TextureFiles, intern};
 use crate::scene::{
-    Channel, Parameter, Pattern, PatternKind, Rgb, SceneError, Texture, TextureBinding, Wrap,
+    Channel, Parameter, Pattern, PatternKind, Rgb, SceneError, Texture, TextureBinding, TextureId, Wrap,
 };
 use std::path::{Path, PathBuf};
 
@@ -43,6 +43,13 @@ impl Textures {
             }
         }
         Ok(bindings)
+    }
+
+    /// The picture that the key `image` of the background asks for: around the scene once, from pole to pole.
+    pub fn read_environment(&mut self, background: &Reader) -> Result<Option<TextureId>> {
+        let Some(file) = background.text("image")? else { return Ok(None) };
+        let texture = self.load(background, "image", file, ColorSpace::Srgb)?;
+        Ok(Some(intern(&mut self.list, Texture { wrap_v: Wrap::Clamp, ..texture })))
     }
 
     fn read_binding(
