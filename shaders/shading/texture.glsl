@@ -155,10 +155,9 @@ vec4 filter_texture(Texture texture_record, vec2 uv, Detail detail) {
     return result;
 }
 
-// The texture at the surface's `uv`, read at the point alone; any uv is safe.
+// The image at the surface's `uv`, read at the point alone; any uv is safe. Not for patterns.
 vec4 sample_texture(Texture texture_record, vec2 uv) {
-    Detail point = Detail(vec2(0.0), 0.0, 1u);
-    return filter_texture(texture_record, texture_uv(texture_record, uv), point);
+    return read_image(texture_record, texture_uv(texture_record, uv));
 }
 #endif
 

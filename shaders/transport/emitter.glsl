@@ -27,7 +27,7 @@ uint choose_emitter(vec2 u) {
 // Radiance of the point of a textured emitter that `lit` was drawn to from `position` with `u`.
 Spectrum textured_radiance(Emitter emitter, vec3 position, vec2 u, LightSample lit) {
     vec2 b = square_to_uniform_triangle(u);
-    Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0u, 0u);
+    Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0.0, 0.0);
     Hit hit = Hit(lit.distance, b.x, b.y, emitter.instance, emitter.primitive, 0u, 0u, 0u);
     Surface surface = surface_at(ray, hit);
     Material material = material_at(lit.wi, hit, surface);

@@ -158,9 +158,8 @@ pub fn filter_texture(scene: &SceneView, texture: &Texture, uv: Vec2, detail: De
     result
 }
 
-/// The texture at the surface's `uv`, read at the point alone; any uv is safe.
+/// The image at the surface's `uv`, read at the point alone; any uv is safe. Not for patterns.
 #[inline]
 pub fn sample_texture(scene: &SceneView, texture: &Texture, uv: Vec2) -> Vec4 {
-    let point = Detail { spacing: Vec2::ZERO, width: 0.0, probes: 1 };
-    filter_texture(scene, texture, texture_uv(texture, uv), point)
+    read_image(scene, texture, texture_uv(texture, uv))
 }
