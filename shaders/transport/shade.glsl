@@ -57,12 +57,12 @@ void shade(PathState incoming, Hit hit) {
     }
     Surface surface = surface_at(path.ray, hit);
     Material material = material_at(surface);
-    if (header.aovs != 0u && path.path_id == 0u) {
+    if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
         add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
     }
-    uint flags = load_instance(hit.instance).flags;
+    uint flags = SCENE_INTEGRATOR == INTEGRATOR_LOCAL ? load_instance(hit.instance).flags : 0u;
     for (uint index = 0u; index < shading_points(flags); index++) {
         ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
         Material material_there = material;
@@ -72,7 +72,7 @@ void shade(PathState incoming, Hit hit) {
         shade_local(path, key, point, material_there);
     }
     shade_through(path, surface, material);
-    if (header.integrator == INTEGRATOR_WHITTED && path.depth < header.max_depth) {
+    if (SCENE_INTEGRATOR == INTEGRATOR_WHITTED && path.depth < header.max_depth) {
         shade_whitted(path, surface, material);
     }
 }

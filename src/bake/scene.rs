@@ -4,7 +4,8 @@ use super::bvh::{Bounds, TOP_LEAF, Tree};
 use super::filter::filter_table;
 use super::geometry::{BakedMesh, bake_mesh};
 use super::instance::{place, top_margin};
-use super::material::{bake_light, bake_material, bake_texture, casts_shadow, unit};
+use super::light::{bake_light, bake_texture, unit};
+use super::model::{bake_blends, bake_material, casts_shadow};
 use super::srgb::srgb_table;
 use super::{BakeError, SceneData};
 use crate::layout::{
@@ -20,12 +21,12 @@ use rayon::prelude::*;
 
 /// k of the film's fixed point (DESIGN, strict rule 8): 2^-22 of a film unit is the smallest step.
 const FILM_BITS: i32 = 22;
-/// A hierarchy that needs more entries than this is rebuilt when the scene does not fit the stack.
-const DEEP_PART: u32 = 12;
 
 /// Bakes a scene whose indices are valid (`scene::load` guarantees it).
 pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     let mut data = SceneData::default();
+    data.header = header(scene)?;
+    bake_tables(&scene.film.filter, &mut data);
     let default_material = bake_materials(scene, &mut data)?;
     data.lights = scene.lights.iter().map(bake_light).collect();
     for texture in &scene.textures {
@@ -33,8 +34,6 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     }
     check_count("words of texels", data.texels.len())?;
     let meshes = bake_meshes(scene, default_material);
-    data.header = header(scene)?;
-    bake_tables(&scene.film.filter, &mut data);
     let mut parts = place_objects(scene, &meshes, default_material, &mut data)?;
     parts.meshes = meshes;
     build_hierarchy(parts, &mut data)?;
@@ -54,7 +53,7 @@ fn check_count(what: &'static str, count: usize) -> Result<(), BakeError> {
 /// Bakes all materials, and one more where an object or face names none. Returns the id of that one.
 fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, BakeError> {
     for material in &scene.materials {
-        data.materials.push(bake_material(material)?);
+        data.materials.push(bake_material(material, &mut data.tables)?);
     }
     let nameless = |object: &Object| match object.geometry {
         Geometry::Sphere => object.material.is_none(),
@@ -62,8 +61,10 @@ fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, Bak
     };
     let default = MaterialId(scene.materials.len() as u32);
     if scene.objects.iter().any(nameless) {
-        data.materials.push(bake_material(&Material::grey("default"))?);
+        data.materials.push(bake_material(&Material::grey("default"), &mut data.tables)?);
     }
+    bake_blends(&scene.materials, &mut data.materials)?;
+    check_count("table entries", data.tables.len())?;
     Ok(default)
 }
 
@@ -206,26 +207,19 @@ fn instance_shadow(scene: &Scene, object: &Object) -> (bool, Option<String>) {
     (casts, warning)
 }
 
-/// Builds the top level and lays all hierarchies out in one array. Rebuilds what is too deep for the stack.
-fn build_hierarchy(mut parts: Parts, data: &mut SceneData) -> Result<(), BakeError> {
+/// Builds the top level and lays all hierarchies out in one array.
+fn build_hierarchy(parts: Parts, data: &mut SceneData) -> Result<(), BakeError> {
     data.header.top_margin = top_margin(parts.growth);
     data.header.top_root = INVALID;
     if parts.shown.is_empty() {
         return Ok(());
     }
     let boxes: Vec<Bounds> = parts.shown.iter().map(|&(_, world)| world).collect();
-    let mut top = Tree::build(&boxes, TOP_LEAF);
-    data.stack_depth = total_depth(&top, &parts);
+    let top = Tree::build(&boxes, TOP_LEAF);
+    let meshes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.stack_depth());
+    data.stack_depth = meshes.fold(top.stack_depth(), u32::max);
     if data.stack_depth > STACK_SIZE {
-        let deep = |mesh: &&mut BakedMesh| mesh.stack_depth() > DEEP_PART;
-        parts.meshes.iter_mut().flatten().filter(deep).for_each(BakedMesh::flatten_tree);
-        if top.stack_depth(|_| Some(0)) > DEEP_PART {
-            top = Tree::median_split(&boxes, TOP_LEAF);
-        }
-        data.stack_depth = total_depth(&top, &parts);
-        if data.stack_depth > STACK_SIZE {
-            return Err(BakeError::Deep(data.stack_depth));
-        }
+        return Err(BakeError::Deep(data.stack_depth));
     }
 
     let triangles = parts.meshes.iter().flatten().map(|mesh| mesh.triangles.len()).sum();
@@ -251,13 +245,6 @@ fn build_hierarchy(mut parts: Parts, data: &mut SceneData) -> Result<(), BakeErr
         instance.root = mesh.map_or(INVALID, |id| roots[id]);
     }
     Ok(())
-}
-
-/// Entries of the stack that the worst ray needs, top level and mesh together.
-fn total_depth(top: &Tree, parts: &Parts) -> u32 {
-    let meshes: Vec<u32> = parts.meshes.iter().map(|mesh| mesh.as_ref().map_or(0, BakedMesh::stack_depth)).collect();
-    // A sphere is tested on the spot.
-    top.stack_depth(|place| parts.shown[top.order[place as usize] as usize].0.map(|mesh| meshes[mesh]))
 }
 
 /// All of the header that does not depend on the arrays.

@@ -6,7 +6,7 @@ use super::local::{shade_local, shade_through};
 use super::whitted::shade_whitted;
 use super::{DITHER_BACKGROUND, Queues, add_aov, add_contribution};
 use crate::layout::{
-    Hit, INTEGRATOR_WHITTED, INVALID, Material, PathState, SceneView, load_instance, load_material, load_texture,
+    Hit, INTEGRATOR_LOCAL, INTEGRATOR_WHITTED, INVALID, Material, PathState, SceneView, load_instance, load_material, load_texture,
 };
 use crate::shading::dielectric::transmittance;
 use crate::shading::material::albedo_material;
@@ -71,7 +71,8 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
         add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
     }
-    let flags = load_instance(scene, hit.instance).flags;
+    let local = scene.header.integrator == INTEGRATOR_LOCAL;
+    let flags = if local { load_instance(scene, hit.instance).flags } else { 0 };
     for index in 0..shading_points(flags) {
         let point = shading_point(scene, &path.ray, hit, &surface, flags, index);
         let material_there = if faceted(flags) { material_at(scene, &point.surface) } else { material };
