@@ -35,6 +35,8 @@ fn sky(width: u32, height: u32, texels: Vec<[f32; 4]>, turn: f64) -> SceneData {
         bilinear: true,
         scale: [1.0; 2],
         offset: [0.0; 2],
+        mipmap: false,
+        shear: [0.0; 2],
     }];
     let to_world = Transform::rotate(Vec3::new(0.2, 1.0, -0.4), turn);
     scene.background = Background::Image(Environment { texture: TextureId(0), scale: Rgb::splat(0.5), to_world });
@@ -245,6 +247,8 @@ fn lit(position: Vec3) -> Surface {
         primitive: 0,
         kind: KIND_SPHERE,
         error: 0.0,
+        cone_width: 0.0,
+        cone_spread: 0.0,
     }
 }
 

@@ -37,8 +37,7 @@ vec3 to_camera(vec3 position) {
 // Point number `index` at which `hit` of `ray` is shaded. `here`: the surface there. `flags`: of the hit instance.
 ShadingPoint shading_point(Ray ray, Hit hit, Surface here, uint flags, uint index) {
     if (!faceted(flags)) {
-        vec3 straight = -ray.direction;
-        return ShadingPoint(here, hit, facing_normal(here, straight), straight, 1.0, 0u);
+        return ShadingPoint(here, hit, here, -ray.direction, 1.0, 0u);
     }
     Hit at = hit;
     float share = 1.0;
@@ -63,13 +62,14 @@ ShadingPoint shading_point(Ray ray, Hit hit, Surface here, uint flags, uint inde
     if (cos_view < COS_VIEW_MIN) {
         wo = normalize3(wo + normal * (COS_VIEW_MIN - cos_view));
     }
+    Surface shadow_from = surface;
     if ((flags & INSTANCE_GOURAUD) != 0u) {
         // The same shadow ray for every triangle that shares the corner, or the picture would break at its edges.
-        surface.normal_geometric = surface.normal;
-        surface.primitive = INVALID;
-        surface.error *= CORNER_LIFT;
+        shadow_from.normal_geometric = surface.normal;
+        shadow_from.primitive = INVALID;
+        shadow_from.error = surface.error * CORNER_LIFT;
     }
-    return ShadingPoint(surface, at, normal, wo, share, index * DITHER_CORNER);
+    return ShadingPoint(surface, at, shadow_from, wo, share, index * DITHER_CORNER);
 }
 
 #endif

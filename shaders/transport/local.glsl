@@ -22,8 +22,8 @@ struct ShadingPoint {
     Surface surface;
     // Where on its triangle that is.
     Hit hit;
-    // Unit shading normal on the viewer's side.
-    vec3 normal;
+    // Where its shadow rays start.
+    Surface shadow_from;
     // Unit, to the viewer.
     vec3 wo;
     // Part of the hit's radiance that it stands for, 0..1.
@@ -44,20 +44,16 @@ vec3 facing_normal(Surface surface, vec3 wo) {
     return normal;
 }
 
-// The frame in which `material` is shaded for a viewer at `wo`: z is `facing`, the normal on the viewer's side, or for
-// models that transmit the one that leaves the outside; x follows the texture coordinates where the model has a direction.
-Frame frame_about(Surface surface, vec3 facing, Material material, vec3 wo) {
+// The frame in which `material` is shaded for a viewer at `wo`: z is the normal on the viewer's side, or for models that
+// transmit the one that leaves the outside; x follows the texture coordinates where the model has a direction.
+Frame shading_frame(Surface surface, Material material, vec3 wo) {
+    vec3 facing = facing_normal(surface, wo);
     bool inside = (material.flags & MATERIAL_TRANSMISSIVE) != 0u && dot3(surface.normal_geometric, wo) < 0.0;
     vec3 normal = inside ? -facing : facing;
     if ((material.flags & MATERIAL_ANISOTROPIC) != 0u) {
         return frame_from_tangent(normal, surface_tangent(surface));
     }
     return frame_from_normal(normal);
-}
-
-// The same about the shading normal.
-Frame shading_frame(Surface surface, Material material, vec3 wo) {
-    return frame_about(surface, facing_normal(surface, wo), material, wo);
 }
 
 // True if a viewer at `wo` sees the back of a surface that reflects on its front only.
@@ -81,30 +77,31 @@ Spectrum light_contribution(Spectrum weight, Material material, Frame frame, vec
 // Adds emission, ambient and every light's share of the surface, as seen from `point.wo`.
 // `key`: of the path. Directions in world space. Radiance along the ray's way back.
 void shade_local(PathState path, SampleKey key, ShadingPoint point, Material material) {
+    Surface surface = point.surface;
     vec3 wo = point.wo;
     Spectrum weight = path.throughput * (own_weight(material) * point.share);
-    bool hidden = is_hidden_back(point.surface, material, wo);
+    bool hidden = is_hidden_back(surface, material, wo);
     Spectrum reflected = spectrum_from_rgb(header.ambient) * ambient_material(material);
     if (hidden) {
         reflected = spectrum_zero();
     }
-    Spectrum own = weight * (reflected + spectrum_from_rgb(emitted(point.surface, material, wo)));
+    Spectrum own = weight * (reflected + spectrum_from_rgb(emitted(surface, material, wo)));
     // A mirror or a glass covers the background like anything else.
     float alpha = path.coverage * ((1.0 - material.k_t) * point.share);
     uint dither = dither_hash(key, DITHER_SURFACE + point.dither);
     add_contribution(header.film_scale, path.slot, vec4(own.x, own.y, own.z, alpha), dither);
 
     if (!is_delta(material) && !hidden) {
-        Frame frame = frame_about(point.surface, point.normal, material, wo);
+        Frame frame = shading_frame(surface, material, wo);
         for (uint index = 0u; index < header.light_count; index++) {
             Light light = load_light(index);
-            LightSample lit = sample_light(light, point.surface.position);
+            LightSample lit = sample_light(light, surface.position);
             Spectrum seen = light_contribution(weight, material, frame, wo, lit.wi, lit.radiance);
             if (spectrum_max(seen) > 0.0) {
                 vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
                 uint light_dither = dither_hash(key, (DITHER_LIGHT + point.dither) + index);
                 if (header.shadows != 0u && light.casts_shadow != 0u) {
-                    Ray ray = spawn_ray(point.surface, lit.wi, lit.distance * SHADOW_END);
+                    Ray ray = spawn_ray(point.shadow_from, lit.wi, lit.distance * SHADOW_END);
                     push_shadow(ShadowRay(ray, contribution, path.slot, light_dither, 0u, 0u));
                 } else {
                     add_contribution(header.film_scale, path.slot, contribution, light_dither);

@@ -53,7 +53,7 @@ void shade(PathState incoming, Hit hit) {
         shade_path(path, key, hit, surface, material);
         return;
     }
-    uint flags = SCENE_HAS_FACETS ? load_instance(hit.instance).flags : 0u;
+    uint flags = SCENE_HAS_FACETS && SCENE_INTEGRATOR == INTEGRATOR_LOCAL ? load_instance(hit.instance).flags : 0u;
     for (uint index = 0u; index < shading_points(flags); index++) {
         ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
         Material material_there = material;

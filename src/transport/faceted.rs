@@ -2,7 +2,7 @@
 //! Source: Gouraud 1971, "Continuous Shading of Curved Surfaces".
 
 use super::DITHER_CORNER;
-use super::local::{COS_VIEW_MIN, ShadingPoint, facing_normal};
+use super::local::{COS_VIEW_MIN, ShadingPoint};
 use crate::layout::{CAMERA_PERSPECTIVE, Hit, INSTANCE_FLAT, INSTANCE_GOURAUD, INVALID, Ray, SceneView};
 use crate::shading::math::{dot3, max_, normalize3};
 use crate::trace::surface::{Surface, surface_at};
@@ -37,8 +37,14 @@ pub fn to_camera(scene: &SceneView, position: Vec3) -> Vec3 {
 /// Point number `index` at which `hit` of `ray` is shaded. `here`: the surface there. `flags`: of the hit instance.
 pub fn shading_point(scene: &SceneView, ray: &Ray, hit: &Hit, here: &Surface, flags: u32, index: u32) -> ShadingPoint {
     if !faceted(flags) {
-        let wo = -ray.direction;
-        return ShadingPoint { surface: *here, hit: *hit, normal: facing_normal(here, wo), wo, share: 1.0, dither: 0 };
+        return ShadingPoint {
+            surface: *here,
+            hit: *hit,
+            shadow_from: *here,
+            wo: -ray.direction,
+            share: 1.0,
+            dither: 0,
+        };
     }
     let mut at = *hit;
     let mut share = 1.0;
@@ -69,11 +75,12 @@ pub fn shading_point(scene: &SceneView, ray: &Ray, hit: &Hit, here: &Surface, fl
     if cos_view < COS_VIEW_MIN {
         wo = normalize3(wo + normal * (COS_VIEW_MIN - cos_view));
     }
+    let mut shadow_from = surface;
     if (flags & INSTANCE_GOURAUD) != 0 {
         // The same shadow ray for every triangle that shares the corner, or the picture would break at its edges.
-        surface.normal_geometric = surface.normal;
-        surface.primitive = INVALID;
-        surface.error *= CORNER_LIFT;
+        shadow_from.normal_geometric = surface.normal;
+        shadow_from.primitive = INVALID;
+        shadow_from.error = surface.error * CORNER_LIFT;
     }
-    ShadingPoint { surface, hit: at, normal, wo, share, dither: index * DITHER_CORNER }
+    ShadingPoint { surface, hit: at, shadow_from, wo, share, dither: index * DITHER_CORNER }
 }

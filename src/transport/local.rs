@@ -26,8 +26,8 @@ pub struct ShadingPoint {
     pub surface: Surface,
     /// Where on its triangle that is.
     pub hit: Hit,
-    /// Unit shading normal on the viewer's side.
-    pub normal: Vec3,
+    /// Where its shadow rays start.
+    pub shadow_from: Surface,
     /// Unit, to the viewer.
     pub wo: Vec3,
     /// Part of the hit's radiance that it stands for, 0..1.
@@ -48,20 +48,16 @@ pub fn facing_normal(surface: &Surface, wo: Vec3) -> Vec3 {
     normal
 }
 
-/// The frame in which `material` is shaded for a viewer at `wo`: z is `facing`, the normal on the viewer's side, or for
-/// models that transmit the one that leaves the outside; x follows the texture coordinates where the model has a direction.
-pub fn frame_about(scene: &SceneView, surface: &Surface, facing: Vec3, material: &Material, wo: Vec3) -> Frame {
+/// The frame in which `material` is shaded for a viewer at `wo`: z is the normal on the viewer's side, or for models that
+/// transmit the one that leaves the outside; x follows the texture coordinates where the model has a direction.
+pub fn shading_frame(scene: &SceneView, surface: &Surface, material: &Material, wo: Vec3) -> Frame {
+    let facing = facing_normal(surface, wo);
     let inside = (material.flags & MATERIAL_TRANSMISSIVE) != 0 && dot3(surface.normal_geometric, wo) < 0.0;
     let normal = if inside { -facing } else { facing };
     if (material.flags & MATERIAL_ANISOTROPIC) != 0 {
         return frame_from_tangent(normal, surface_tangent(scene, surface));
     }
     frame_from_normal(normal)
-}
-
-/// The same about the shading normal.
-pub fn shading_frame(scene: &SceneView, surface: &Surface, material: &Material, wo: Vec3) -> Frame {
-    frame_about(scene, surface, facing_normal(surface, wo), material, wo)
 }
 
 /// True if a viewer at `wo` sees the back of a surface that reflects on its front only.
@@ -100,30 +96,31 @@ pub fn shade_local(
     material: &Material,
     queues: &mut Queues,
 ) {
+    let surface = &point.surface;
     let wo = point.wo;
     let weight = path.throughput * (own_weight(material) * point.share);
-    let hidden = is_hidden_back(&point.surface, material, wo);
+    let hidden = is_hidden_back(surface, material, wo);
     let mut reflected = spectrum_from_rgb(scene.header.ambient) * ambient_material(material);
     if hidden {
         reflected = spectrum_zero();
     }
-    let own = weight * (reflected + spectrum_from_rgb(emitted(&point.surface, material, wo)));
+    let own = weight * (reflected + spectrum_from_rgb(emitted(surface, material, wo)));
     // A mirror or a glass covers the background like anything else.
     let alpha = path.coverage * ((1.0 - material.k_t) * point.share);
     let dither = dither_hash(key, DITHER_SURFACE + point.dither);
     add_contribution(queues, scene.header.film_scale, path.slot, Vec4::new(own.x, own.y, own.z, alpha), dither);
 
     if !is_delta(material) && !hidden {
-        let frame = frame_about(scene, &point.surface, point.normal, material, wo);
+        let frame = shading_frame(scene, surface, material, wo);
         for index in 0..scene.header.light_count {
             let light: Light = load_light(scene, index);
-            let lit = sample_light(&light, point.surface.position);
+            let lit = sample_light(&light, surface.position);
             let seen = light_contribution(scene, weight, material, frame, wo, lit.wi, lit.radiance);
             if spectrum_max(seen) > 0.0 {
                 let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
                 let light_dither = dither_hash(key, (DITHER_LIGHT + point.dither) + index);
                 if scene.header.shadows != 0 && light.casts_shadow != 0 {
-                    let ray = spawn_ray(&point.surface, lit.wi, lit.distance * SHADOW_END);
+                    let ray = spawn_ray(&point.shadow_from, lit.wi, lit.distance * SHADOW_END);
                     push_shadow(
                         queues,
                         ShadowRay { ray, contribution, slot: path.slot, dither: light_dither, _pad0: 0, _pad1: 0 },

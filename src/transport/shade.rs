@@ -8,7 +8,9 @@ use super::path::{shade_escape, shade_path};
 use super::textured::material_at;
 use super::whitted::shade_whitted;
 use super::{DITHER_BACKGROUND, Queues, add_aov, add_contribution};
-use crate::layout::{Hit, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, PathState, SceneView, load_instance};
+use crate::layout::{
+    Hit, INTEGRATOR_LOCAL, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, PathState, SceneView, load_instance,
+};
 use crate::shading::dielectric::transmittance;
 use crate::shading::environment::background;
 use crate::shading::material::albedo_material;
@@ -60,7 +62,8 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
         shade_path(scene, &path, key, hit, &surface, &material, queues);
         return;
     }
-    let flags = load_instance(scene, hit.instance).flags;
+    let local = scene.header.integrator == INTEGRATOR_LOCAL;
+    let flags = if local { load_instance(scene, hit.instance).flags } else { 0 };
     for index in 0..shading_points(flags) {
         let mut point = shading_point(scene, &path.ray, hit, &surface, flags, index);
         let mut material_there = material;
