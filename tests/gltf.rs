@@ -32,7 +32,7 @@ fn check_scene(scene: &Scene) {
         assert!((object.material.expect("a material").0 as usize) < scene.materials.len());
     }
     for material in &scene.materials {
-        assert!(material.color_texture.is_none_or(|t| (t.0 as usize) < scene.textures.len()));
+        assert!(material.textures.iter().all(|t| (t.texture.0 as usize) < scene.textures.len()));
         assert!(material.color.is_finite() && material.emission.is_finite() && material.k_r >= 0.0);
         if let Model::CookTorrance { .. } = material.model {
             assert_eq!(material.k_d + material.k_s, 1.0);
@@ -203,7 +203,7 @@ fn gltf_material_becomes_our_nearest_model() {
     };
     let metal = with(r#"{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "roughnessFactor": 0.5}}"#);
     let Model::CookTorrance { lobes, fresnel, .. } = &metal.model else { panic!("{metal:?}") };
-    assert_eq!(lobes[0].m, 0.25);
+    assert_eq!(lobes[0].alpha_u, 0.25);
     assert!(matches!(fresnel, gonio::scene::Fresnel::Conductor { .. }));
     assert_eq!(metal.specular_color, Vec3::new(1.0, 0.5, 0.25));
     let mirror = with(r#"{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "roughnessFactor": 0}}"#);

@@ -155,8 +155,11 @@ fn map_kd_reads_its_options_and_a_missing_image_is_a_warning() {
     let texture = &scene.textures[0];
     assert_eq!((texture.scale, texture.offset), ([2.0, 3.0], [0.5, 0.0]));
     assert_eq!((texture.wrap_u, texture.wrap_v), (Wrap::Clamp, Wrap::Clamp));
-    assert_eq!((scene.materials[0].color, scene.materials[0].color_texture), (Rgb::ONE, Some(TextureId(0))));
-    assert_eq!((scene.materials[1].color, scene.materials[1].color_texture), (Rgb::splat(0.5), None));
+    assert_eq!(
+        (scene.materials[0].color, scene.materials[0].texture(Parameter::Color)),
+        (Rgb::ONE, Some(TextureId(0)))
+    );
+    assert_eq!((scene.materials[1].color, scene.materials[1].texture(Parameter::Color)), (Rgb::splat(0.5), None));
     let warnings = scene.warnings.join("\n");
     assert!(warnings.contains("ignored: map_Bump") && warnings.contains("a.mtl:6: no texture: "), "{warnings}");
 }

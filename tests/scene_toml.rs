@@ -171,8 +171,9 @@ fn cook_torrance_takes_metals_indices_and_lobes() {
     assert_eq!(
         plastic.model,
         Model::CookTorrance {
-            lobes: vec![Lobe { m: 0.15, weight: 1.0 }],
+            lobes: vec![Lobe::beckmann(0.15, 1.0)],
             fresnel: Fresnel::Dielectric { eta: 1.46 },
+            masking: Masking::VCavity,
             normalisation_1982: true
         }
     );
@@ -183,7 +184,7 @@ fn cook_torrance_takes_metals_indices_and_lobes() {
     let Model::CookTorrance { lobes, fresnel: Fresnel::Conductor { .. }, .. } = &copper.model else {
         panic!("{:?}", copper.model)
     };
-    assert_eq!(lobes, &[Lobe { m: 0.4, weight: 0.4 }, Lobe { m: 0.2, weight: 0.6 }]);
+    assert_eq!(lobes, &[Lobe::beckmann(0.4, 0.4), Lobe::beckmann(0.2, 0.6)]);
     assert_eq!((copper.k_d, copper.k_s), (0.0, 1.0));
     assert!((copper.color - Rgb::new(0.955, 0.638, 0.537)).abs().max_element() < 1e-4, "ambient light shows copper");
     let own = material("model = \"cook-torrance\"\neta = [0.2, 1, 1.2]\nk = [4, 2.5, 2.4]");
@@ -208,7 +209,7 @@ fn a_texture_is_read_once_and_laid_on_as_written() {
          texture = {{ file = '{file}', wrap = [\"clamp\", \"mirror\"], filter = \"nearest\", scale = 4, offset = [0.5, 0.25], colorspace = \"linear\" }}\n{LEAST}"
     );
     let scene = read(&text, &[]);
-    let ids: Vec<_> = scene.materials.iter().take(3).map(|material| material.color_texture).collect();
+    let ids: Vec<_> = scene.materials.iter().take(3).map(|material| material.texture(Parameter::Color)).collect();
     assert_eq!(ids, [Some(TextureId(0)), Some(TextureId(0)), Some(TextureId(1))]);
     assert_eq!(scene.materials[0].color, Rgb::ONE, "a texture shows its own colours unless a factor is given");
     let texture = &scene.textures[1];

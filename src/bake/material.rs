@@ -8,7 +8,9 @@ use crate::layout::{
     MODEL_MIRROR, MODEL_PHONG, Material, TEXEL_FLOAT, TEXEL_LINEAR8, TEXEL_SRGB8, Texture, WRAP_CLAMP, WRAP_MIRROR,
     WRAP_REPEAT,
 };
-use crate::scene::{self, Attenuation, Fresnel, IntensityUnit, LightKind, Model, TextureData, Transparency, Wrap};
+use crate::scene::{
+    self, Attenuation, Fresnel, IntensityUnit, LightKind, Model, Parameter, TextureData, Transparency, Wrap,
+};
 use glam::{DVec3, Vec3};
 
 /// One material.
@@ -21,10 +23,11 @@ pub fn bake_material(material: &scene::Material) -> Result<Material, BakeError> 
         k_s: material.k_s,
         k_r: material.k_r,
         eta: Vec3::ONE,
-        color_texture: material.color_texture.map_or(INVALID, |id| id.0),
+        color_texture: material.texture(Parameter::Color).map_or(INVALID, |id| id.0),
         emission: material.emission,
         ..Material::default()
     };
+    let unfinished = || BakeError::Unfinished { name: material.name.clone() };
     match &material.model {
         Model::Lambert => baked.model = MODEL_LAMBERT,
         Model::Phong { exponent, lafortune } => {
@@ -36,17 +39,17 @@ pub fn bake_material(material: &scene::Material) -> Result<Material, BakeError> 
             baked.model = MODEL_BLINN_PHONG;
             baked.exponent = *exponent;
         }
-        Model::CookTorrance { lobes, fresnel, normalisation_1982 } => {
+        Model::CookTorrance { lobes, fresnel, normalisation_1982, .. } => {
             baked.model = MODEL_COOK_TORRANCE;
             let (first, second) = match lobes[..] {
-                [first] => (first, scene::Lobe { m: first.m, weight: 0.0 }),
+                [first] => (first, scene::Lobe { weight: 0.0, ..first }),
                 [first, second] => (first, second),
                 _ => {
                     return Err(BakeError::Lobes { name: material.name.clone(), count: lobes.len() });
                 }
             };
-            (baked.m0, baked.w0) = (first.m, first.weight);
-            (baked.m1, baked.w1) = (second.m, second.weight);
+            (baked.m0, baked.w0) = (first.alpha_u, first.weight);
+            (baked.m1, baked.w1) = (second.alpha_u, second.weight);
             match *fresnel {
                 Fresnel::Dielectric { eta } => baked.eta = Vec3::splat(eta),
                 Fresnel::Conductor { eta, k } => {
@@ -54,6 +57,7 @@ pub fn bake_material(material: &scene::Material) -> Result<Material, BakeError> 
                     baked.k = k;
                     baked.flags |= MATERIAL_CONDUCTOR;
                 }
+                Fresnel::Schlick { .. } => return Err(unfinished()),
             }
             baked.flags |= if *normalisation_1982 { MATERIAL_D_1982 } else { 0 };
         }
@@ -64,6 +68,7 @@ pub fn bake_material(material: &scene::Material) -> Result<Material, BakeError> 
             baked.absorption = *absorption;
         }
         Model::Emissive => baked.model = MODEL_EMISSIVE,
+        _ => return Err(unfinished()),
     }
     match material.transparency {
         None => {}

@@ -29,6 +29,9 @@ pub enum BakeError {
     /// Cook-Torrance has one or two lobes.
     #[error("material \"{name}\" has {count} lobes; one or two are possible")]
     Lobes { name: String, count: usize },
+    /// A model whose shading has not landed yet.
+    #[error("material \"{name}\": its model cannot be drawn yet")]
+    Unfinished { name: String },
     /// The eye is its own target, or the like.
     #[error("the camera {0}")]
     Camera(&'static str),

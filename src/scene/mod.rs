@@ -10,15 +10,20 @@ pub mod material;
 pub mod mesh;
 pub mod settings;
 pub mod shape;
+pub mod table;
 pub mod texture;
 pub mod transform;
 
 pub use camera::{Camera, Projection};
 pub use error::{Location, SceneError};
 pub use light::{Attenuation, IntensityUnit, Light, LightKind};
-pub use material::{Fresnel, Lobe, Material, Model, Transparency};
+pub use material::{
+    Channel, Distribution, Fresnel, Lobe, Masking, Material, Model, Parameter, Principled, TextureBinding,
+    Transparency, WardNormalisation,
+};
 pub use mesh::Mesh;
 pub use settings::{Background, Film, Filter, Integrator, RenderSettings, Sampler, ToneMap};
+pub use table::Table;
 pub use texture::{Texture, TextureData, Wrap};
 pub use transform::Transform;
 
@@ -30,6 +35,9 @@ pub struct MaterialId(pub u32);
 /// Index into `Scene::textures`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TextureId(pub u32);
+/// Index into `Scene::tables`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TableId(pub u32);
 /// Index into `Scene::meshes`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MeshId(pub u32);
@@ -50,6 +58,7 @@ pub struct Scene {
     pub ambient: Rgb,
     pub materials: Vec<Material>,
     pub textures: Vec<Texture>,
+    pub tables: Vec<Table>,
     pub meshes: Vec<Mesh>,
     pub objects: Vec<Object>,
     pub lights: Vec<Light>,

@@ -141,6 +141,7 @@ pub fn empty_scene() -> Scene {
         ambient: Vec3::ZERO,
         materials: vec![Material::grey("grey")],
         textures: Vec::new(),
+        tables: Vec::new(),
         meshes: Vec::new(),
         objects: Vec::new(),
         lights: Vec::new(),

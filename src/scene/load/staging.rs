@@ -55,6 +55,7 @@ pub fn bare_scene(path: &Path) -> Scene {
         ambient: Rgb::ZERO,
         materials: Vec::new(),
         textures: Vec::new(),
+        tables: Vec::new(),
         meshes: Vec::new(),
         objects: Vec::new(),
         lights: Vec::new(),

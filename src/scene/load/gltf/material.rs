@@ -17,7 +17,7 @@
 use super::Failure;
 use super::texture::{Coordinates, Textures};
 use crate::scene::load::image::ColorSpace;
-use crate::scene::{Fresnel, Lobe, Material, Model, Rgb, Scene, Transparency};
+use crate::scene::{Fresnel, Lobe, Masking, Material, Model, Rgb, Scene, TextureBinding, Transparency};
 use glam::Vec3;
 use gltf::json::extensions::material::{PbrSpecularGlossiness, Volume};
 use gltf::json::material::AlphaMode;
@@ -75,7 +75,7 @@ pub(super) fn convert(
             material.color *= Vec3::new(mean[0] as f32, mean[1] as f32, mean[2] as f32);
         } else {
             let used = textures.color(scene, info, &place)?;
-            material.color_texture = Some(used.texture);
+            material.textures.push(TextureBinding::color(used.texture));
             coordinates = Some(used.coordinates);
         }
     }
@@ -171,7 +171,11 @@ fn from_specular_glossiness(glossy: &PbrSpecularGlossiness) -> Surface {
 }
 
 fn slope(roughness: f32) -> Vec<Lobe> {
-    vec![Lobe { m: (roughness * roughness).max(SLOPE_MIN), weight: 1.0 }]
+    vec![Lobe::beckmann((roughness * roughness).max(SLOPE_MIN), 1.0)]
+}
+
+fn cook_torrance(roughness: f32, fresnel: Fresnel) -> Model {
+    Model::CookTorrance { lobes: slope(roughness), fresnel, masking: Masking::VCavity, normalisation_1982: false }
 }
 
 fn make_metal(material: &mut Material, roughness: f32) {
@@ -184,7 +188,7 @@ fn make_metal(material: &mut Material, roughness: f32) {
     let (eta, k) = conductor(f64::from(brightest), EDGE_TINT);
     material.specular_color = if brightest > 0.0 { material.color / brightest } else { Rgb::ONE };
     let fresnel = Fresnel::Conductor { eta: Rgb::splat(eta as f32), k: Rgb::splat(k as f32) };
-    material.model = Model::CookTorrance { lobes: slope(roughness), fresnel, normalisation_1982: false };
+    material.model = cook_torrance(roughness, fresnel);
     (material.k_d, material.k_s) = (0.0, 1.0);
     material.k_r = brightest * (1.0 - roughness) * (1.0 - roughness);
 }
@@ -200,7 +204,7 @@ pub(super) fn conductor(r: f64, g: f64) -> (f64, f64) {
 
 fn make_dielectric(material: &mut Material, roughness: f32, eta: f32) {
     let fresnel = Fresnel::Dielectric { eta: eta.max(1.0001) };
-    material.model = Model::CookTorrance { lobes: slope(roughness), fresnel, normalisation_1982: false };
+    material.model = cook_torrance(roughness, fresnel);
     (material.k_d, material.k_s) = (1.0 - SPECULAR_SHARE, SPECULAR_SHARE);
     material.color /= 1.0 - SPECULAR_SHARE;
     material.k_a = 1.0 - SPECULAR_SHARE;
@@ -230,7 +234,7 @@ fn transmit(material: &mut Material, surface: &Surface, factor: f32, volume: Opt
     let absorption = Rgb::from_array(absorption);
     material.model = Model::Dielectric { eta: surface.eta.max(1.0001), absorption };
     material.specular_color = surface.base;
-    (material.color, material.color_texture) = (Rgb::ONE, None);
+    (material.color, material.textures) = (Rgb::ONE, Vec::new());
     (material.k_a, material.k_d, material.k_s, material.k_r) = (0.0, 0.0, 1.0, 0.0);
 }
 

@@ -11,7 +11,9 @@ use super::staging::bare_scene;
 use super::text::read_bytes;
 use super::texture_files::{TextureFiles, intern};
 use crate::scene::shape::{compute_smooth_normals, repair_normals};
-use crate::scene::{Geometry, Location, Material, MaterialId, Mesh, MeshId, Object, Scene, SceneError, Transform};
+use crate::scene::{
+    Geometry, Location, Material, MaterialId, Mesh, MeshId, Object, Scene, SceneError, TextureBinding, Transform,
+};
 use glam::{Vec2, Vec3};
 use statement::{Statement, statements};
 use std::collections::HashMap;
@@ -280,7 +282,10 @@ impl<'s> Reader<'s> {
                 (Material::grey(name), None)
             }
         };
-        material.color_texture = texture.map(|texture| intern(&mut self.scene.textures, texture));
+        material.textures = texture
+            .map(|texture| TextureBinding::color(intern(&mut self.scene.textures, texture)))
+            .into_iter()
+            .collect();
         let id = self.add_material(material);
         self.materials.insert(name.to_owned(), id);
         Ok(id)

@@ -7,7 +7,7 @@ use super::metal::{METALS, normal_reflectance};
 use super::names::Names;
 use super::reader::{Reader, Result, in_range};
 use super::texture::Textures;
-use crate::scene::{Fresnel, Lobe, Material, Model, Rgb, Transparency};
+use crate::scene::{Fresnel, Lobe, Masking, Material, Model, Rgb, TextureBinding, Transparency};
 
 /// All materials of the document, and their names.
 pub fn read_materials(
@@ -54,7 +54,7 @@ fn read_material(
     let (k_d, k_s) = read_weights(table, &model)?;
     Ok(Material {
         color: read_color(table, &model, texture.is_some())?,
-        color_texture: texture,
+        textures: texture.map(TextureBinding::color).into_iter().collect(),
         specular_color: table.color("specular_color")?.unwrap_or(Rgb::ONE),
         k_a: table.float("k_a")?.unwrap_or(1.0),
         k_d,
@@ -64,7 +64,7 @@ fn read_material(
         emission: table.color("emission")?.unwrap_or(Rgb::ZERO),
         casts_shadow: table.boolean("casts_shadow")?,
         model,
-        name,
+        ..Material::grey(name)
     })
 }
 
@@ -77,6 +77,7 @@ fn read_model(table: &Reader, name: &str) -> Result<Model> {
         "cook-torrance" => Model::CookTorrance {
             lobes: read_lobes(table)?,
             fresnel: read_fresnel(table)?,
+            masking: Masking::VCavity,
             normalisation_1982: normalisation == Some("1982"),
         },
         "mirror" => Model::Mirror,
@@ -109,7 +110,7 @@ fn read_lobes(table: &Reader) -> Result<Vec<Lobe>> {
     table.exclusive("m", "lobes")?;
     let tables = table.tables("lobes", &LOBE)?;
     if !table.has("lobes") {
-        return Ok(vec![Lobe { m: table.float("m")?.unwrap_or(0.2), weight: 1.0 }]);
+        return Ok(vec![Lobe::beckmann(table.float("m")?.unwrap_or(0.2), 1.0)]);
     }
     if tables.is_empty() || tables.len() > 2 {
         return Err(table.bad("lobes", format!("\"lobes\" must be one or two tables, found {}", tables.len())));
@@ -119,7 +120,7 @@ fn read_lobes(table: &Reader) -> Result<Vec<Lobe>> {
         .map(|lobe| {
             let m = lobe.required("m", lobe.float("m")?)?;
             let weight = lobe.required("weight", lobe.float("weight")?)?;
-            Ok(Lobe { m, weight })
+            Ok(Lobe::beckmann(m, weight))
         })
         .collect::<Result<Vec<_>>>()?;
     let sum: f32 = lobes.iter().map(|lobe| lobe.weight).sum();

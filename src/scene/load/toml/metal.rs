@@ -42,6 +42,7 @@ pub fn normal_reflectance(fresnel: Fresnel) -> Rgb {
     let (eta, k) = match fresnel {
         Fresnel::Dielectric { eta } => (Rgb::splat(eta), Rgb::ZERO),
         Fresnel::Conductor { eta, k } => (eta, k),
+        Fresnel::Schlick { f0 } => return f0,
     };
     let square = |v: Rgb| v * v;
     (square(eta - Rgb::ONE) + square(k)) / (square(eta + Rgb::ONE) + square(k))

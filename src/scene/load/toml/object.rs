@@ -8,7 +8,7 @@ use super::shapes::{SHAPE_KINDS, ShapeKind, crease, tessellate};
 use super::texture::{beside, refer};
 use crate::scene::load::load_file;
 use crate::scene::shape::compute_smooth_normals;
-use crate::scene::{Geometry, Material, MaterialId, Mesh, MeshId, Object, Scene, TextureId, Transform};
+use crate::scene::{Geometry, Material, MaterialId, Mesh, MeshId, Model, Object, Scene, Transform};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -153,11 +153,25 @@ impl Objects<'_> {
     /// Takes over what `other` shows; its camera, lights and settings are left behind.
     fn merge(&mut self, other: Scene) -> Vec<Piece> {
         let scene = &mut *self.scene;
-        let (textures, materials, meshes) =
-            (scene.textures.len() as u32, scene.materials.len() as u32, scene.meshes.len() as u32);
+        let (textures, materials, meshes, tables) = (
+            scene.textures.len() as u32,
+            scene.materials.len() as u32,
+            scene.meshes.len() as u32,
+            scene.tables.len() as u32,
+        );
         scene.textures.extend(other.textures);
+        scene.tables.extend(other.tables);
         scene.materials.extend(other.materials.into_iter().map(|mut material| {
-            material.color_texture = material.color_texture.map(|id| TextureId(id.0 + textures));
+            for binding in &mut material.textures {
+                binding.texture.0 += textures;
+            }
+            if let Model::Blend { a, b, .. } = &mut material.model {
+                a.0 += materials;
+                b.0 += materials;
+            }
+            if let Model::Measured { table } = &mut material.model {
+                table.0 += tables;
+            }
             material
         }));
         scene.meshes.extend(other.meshes.into_iter().map(|mut mesh| {
