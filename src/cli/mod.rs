@@ -10,6 +10,7 @@ pub mod parity;
 mod progress;
 pub mod render;
 mod setup;
+pub mod verify;
 
 use anyhow::Context;
 use clap::{Parser, Subcommand};
@@ -49,6 +50,8 @@ enum Command {
     Parity(parity::ParityArgs),
     /// Compare two pictures: ULP, MSE, FLIP.
     Compare(compare::CompareArgs),
+    /// Prove that pictures are right: compare them with those of Mitsuba 3.
+    Verify(verify::VerifyArgs),
     /// List what can be used, and why the rest cannot.
     Devices(devices::DevicesArgs),
     /// Print a completion script for a shell.
@@ -86,6 +89,7 @@ pub fn main() -> ExitCode {
         Command::Merge(args) => merge::run(args),
         Command::Parity(args) => parity::run(args, cli.quiet),
         Command::Compare(args) => compare::run(args),
+        Command::Verify(args) => verify::run(args),
         Command::Devices(args) => devices::run(args),
         Command::Completions { shell } => {
             // Into memory first: the generator panics where it cannot write.

@@ -1,8 +1,8 @@
 //! Mitsuba's XML as a tree of elements: includes read, `<default>`s filled in, ids and paths known, every element with its
 //! place. What elements mean is not known here.
 
-use crate::scene::load::names::nearest;
 use crate::scene::load::text::{read_bytes, utf8};
+use crate::scene::load::toml::nearest;
 use crate::scene::{Location, SceneError};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
@@ -17,6 +17,9 @@ const BYTES_MAX: usize = 64 << 20;
 const ELEMENTS_MAX: usize = 1 << 20;
 /// Elements within elements.
 const NESTING_MAX: usize = 64;
+
+/// Beyond this, columns count bytes.
+const COUNTED_MAX: usize = 4096;
 
 /// Index of an element of a `Document`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -361,7 +364,9 @@ impl Source<'_> {
     fn place(&self, offset: usize) -> Place {
         let line = self.lines.partition_point(|start| *start <= offset);
         let text = self.xml.input_text();
-        let column = text[self.lines[line - 1]..offset].chars().count() + 1;
+        let before = &text[self.lines[line - 1]..offset];
+        // Counting characters of a file that is one line would take time quadratic in it.
+        let column = if before.len() > COUNTED_MAX { before.len() } else { before.chars().count() } + 1;
         Place { file: self.file, line: line as u32, column: column as u32 }
     }
 }

@@ -20,6 +20,7 @@ mod shapes;
 mod texture;
 
 pub(super) use keys::LARGEST;
+pub(super) use reader::nearest;
 pub use overrides::Override;
 
 use super::staging::bare_scene;
