@@ -296,7 +296,7 @@ fn a_twin_that_differs_in_a_name_an_argument_or_a_word_is_seen() {
 }
 
 /// Twins that no parity kernel calls by name: the function, and the one through which a kernel runs it.
-const THROUGH: [(&str, &str); 20] = [
+const THROUGH: [(&str, &str); 30] = [
     ("eval_lambert", "eval_material"),
     ("eval_phong", "eval_material"),
     ("eval_blinn_phong", "eval_material"),
@@ -309,7 +309,17 @@ const THROUGH: [(&str, &str); 20] = [
     ("sample_phong", "sample_material"),
     ("sample_blinn_phong", "sample_material"),
     ("sample_cook_torrance", "sample_material"),
-    ("fresnel_cook_torrance", "eval_cook_torrance"),
+    ("fresnel_material", "eval_cook_torrance"),
+    ("make_sample", "finish_sample"),
+    ("no_sample", "sample_material"),
+    ("finish_sample", "sample_material"),
+    ("sample_mirror", "sample_material"),
+    ("sample_conductor", "sample_material"),
+    ("sample_dielectric", "sample_material"),
+    ("sample_thin_dielectric", "sample_material"),
+    ("sample_null", "sample_material"),
+    ("thin_reflectance", "sample_thin_dielectric"),
+    ("fresnel_schlick3", "fresnel_material"),
     ("beckmann_d_slope", "beckmann_d"),
     ("refraction_root", "fresnel_dielectric"),
     ("no_direction", "sample_material"),

@@ -1,18 +1,25 @@
 //! The reflection models: reciprocity, energy, samplers against densities, and inputs at the edge.
 
+use std::sync::LazyLock;
+
 #[path = "common/chi_square.rs"]
 mod chi_square;
 
 use chi_square::{Random, chi_square, direction, integrate_hemisphere, sidak, test_sampler, upper_gamma};
 use glam::{Vec2, Vec3};
+use gonio::bake::SceneData;
 use gonio::layout::{
     MATERIAL_CONDUCTOR, MATERIAL_D_1982, MATERIAL_LAFORTUNE, MODEL_BLINN_PHONG, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC,
     MODEL_EMISSIVE, MODEL_LAMBERT, MODEL_MIRROR, MODEL_PHONG, Material,
 };
+use gonio::shading::bsdf::SAMPLE_DELTA;
 use gonio::shading::material::{
     albedo_material, ambient_material, eval_material, is_delta, mirror_weight, pdf_material, sample_material,
 };
 use gonio::shading::microfacet::{pdf_beckmann, sample_beckmann};
+
+/// These models need no table.
+static NO_SCENE: LazyLock<SceneData> = LazyLock::new(SceneData::default);
 
 /// Both lobes white, half and half; Cook-Torrance of two slopes and index 1.5.
 fn white(model: u32) -> Material {
@@ -66,7 +73,7 @@ fn all_models() -> Vec<(&'static str, Material)> {
 }
 
 fn value(material: &Material, wo: Vec3, wi: Vec3) -> f64 {
-    f64::from(eval_material(material, wo, wi).y)
+    f64::from(eval_material(&NO_SCENE.view(), material, wo, wi).y)
 }
 
 /// f = eval / cos, both ways.
@@ -253,10 +260,10 @@ fn the_chi_square_test_rejects_a_density_that_is_a_little_off() {
         let (result, _) = test_sampler(
             60_000,
             || {
-                let sample = sample_material(&material, wo, random.unit2(), random.unit());
+                let sample = sample_material(&NO_SCENE.view(), &material, wo, random.unit2(), random.unit());
                 (sample.pdf > 0.0).then_some(sample.wi)
             },
-            &|wi| f64::from(pdf_material(&wrong, wo, wi)),
+            &|wi| f64::from(pdf_material(&NO_SCENE.view(), &wrong, wo, wi)),
         );
         assert!(result.p_value < 1e-6, "{wrong_exponent}: {result:?}");
     }
@@ -274,10 +281,10 @@ fn every_sampler_follows_its_density() {
             let (result, integral) = test_sampler(
                 60_000,
                 || {
-                    let sample = sample_material(material, wo, random.unit2(), random.unit());
+                    let sample = sample_material(&NO_SCENE.view(), material, wo, random.unit2(), random.unit());
                     (sample.pdf > 0.0).then_some(sample.wi)
                 },
-                &|wi| f64::from(pdf_material(material, wo, wi)),
+                &|wi| f64::from(pdf_material(&NO_SCENE.view(), material, wo, wi)),
             );
             assert!(result.p_value > significance, "{name} at {z}: {result:?}");
             assert!(integral < 1.0 + 1e-3, "{name} at {z}: pdf integrates to {integral}");
@@ -307,10 +314,10 @@ fn samples_weighted_by_eval_over_pdf_give_the_albedo() {
             let mut random = Random(23);
             let count = 40_000;
             for _ in 0..count {
-                let sample = sample_material(&material, wo, random.unit2(), random.unit());
+                let sample = sample_material(&NO_SCENE.view(), &material, wo, random.unit2(), random.unit());
                 assert!((sample.wi.length() - 1.0).abs() < 2e-6, "{name}: {}", sample.wi);
                 if sample.pdf > 0.0 {
-                    assert_eq!(sample.pdf, pdf_material(&material, wo, sample.wi), "{name}");
+                    assert_eq!(sample.pdf, pdf_material(&NO_SCENE.view(), &material, wo, sample.wi), "{name}");
                     let weight = value(&material, wo, sample.wi) / f64::from(sample.pdf);
                     sum += weight;
                     squares += weight * weight;
@@ -330,9 +337,9 @@ fn nothing_reflects_to_or_from_below_the_horizon() {
     for (name, material) in all_models() {
         for (wo, wi) in [(above, below), (below, above), (below, below), (above, horizon), (horizon, above)] {
             assert_eq!(value(&material, wo, wi), 0.0, "{name}");
-            assert_eq!(pdf_material(&material, wo, wi), 0.0, "{name}");
+            assert_eq!(pdf_material(&NO_SCENE.view(), &material, wo, wi), 0.0, "{name}");
         }
-        assert_eq!(sample_material(&material, below, Vec2::splat(0.4), 0.4).pdf, 0.0, "{name}");
+        assert_eq!(sample_material(&NO_SCENE.view(), &material, below, Vec2::splat(0.4), 0.4).pdf, 0.0, "{name}");
     }
 }
 
@@ -349,14 +356,15 @@ fn every_model_is_finite_at_the_edges_of_its_parameters_and_directions() {
                     for b in zs {
                         for phi in [0.0, 1.0, std::f64::consts::PI] {
                             let wi = direction(b, phi);
-                            let (eval, pdf) = (value(&material, wo, wi), pdf_material(&material, wo, wi));
+                            let (eval, pdf) =
+                                (value(&material, wo, wi), pdf_material(&NO_SCENE.view(), &material, wo, wi));
                             assert!(eval.is_finite() && eval >= 0.0, "{name} {wo} {wi}: {eval}");
                             assert!(pdf.is_finite() && pdf >= 0.0, "{name} {wo} {wi}: {pdf}");
                         }
                     }
                     for u in us {
                         for v in us {
-                            let sample = sample_material(&material, wo, Vec2::new(u, v), 0.3);
+                            let sample = sample_material(&NO_SCENE.view(), &material, wo, Vec2::new(u, v), 0.3);
                             assert!(sample.wi.is_finite() && sample.pdf.is_finite(), "{name} {wo} {u} {v}");
                         }
                     }
@@ -378,12 +386,14 @@ fn phong_of_exponent_zero_is_constant_and_large_exponents_are_sharp() {
 }
 
 #[test]
-fn mirror_dielectric_and_emissive_are_left_to_the_integrator() {
+fn mirror_and_dielectric_have_lobes_of_zero_width_only() {
     for model in [MODEL_MIRROR, MODEL_DIELECTRIC, MODEL_EMISSIVE] {
         let material = white(model);
         assert_eq!(value(&material, Vec3::Z, Vec3::Z), 0.0);
-        assert_eq!(pdf_material(&material, Vec3::Z, Vec3::Z), 0.0);
-        assert_eq!(sample_material(&material, Vec3::Z, Vec2::splat(0.5), 0.5).pdf, 0.0);
+        assert_eq!(pdf_material(&NO_SCENE.view(), &material, Vec3::Z, Vec3::Z), 0.0);
+        let sample = sample_material(&NO_SCENE.view(), &material, Vec3::Z, Vec2::splat(0.5), 0.5);
+        assert_eq!(sample.pdf > 0.0, model != MODEL_EMISSIVE);
+        assert_eq!(sample.flags & SAMPLE_DELTA != 0, model != MODEL_EMISSIVE);
         assert_eq!(ambient_material(&material).x, 0.0);
         assert_eq!(is_delta(&material), model != MODEL_EMISSIVE);
     }

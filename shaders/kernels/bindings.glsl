@@ -16,6 +16,9 @@ layout(constant_id = 1) const uint NODE_PAGES = 1u;
 layout(constant_id = 2) const uint TRIANGLE_PAGES = 1u;
 layout(constant_id = 3) const uint DATA_PAGES = 1u;
 layout(constant_id = 4) const uint PAGE_SHIFT = 31u;
+// Bit n: a material of the scene has MODEL_* n. What no material has costs nothing: the driver cuts it away.
+layout(constant_id = 5) const uint MODELS_PRESENT = 0xffffffffu;
+#define HAS_MODEL(model) ((MODELS_PRESENT & (1u << (model))) != 0u)
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };

@@ -15,14 +15,6 @@
 #include "shading/spectrum.glsl"
 #include "shading/warp.glsl"
 
-// Fresnel reflectance of the facets, linear Rec. 709. `v_h`: cosine of the half angle between the directions, 0..1.
-vec3 fresnel_cook_torrance(Material material, float v_h) {
-    if ((material.flags & MATERIAL_CONDUCTOR) != 0u) {
-        return fresnel_conductor3(v_h, material.eta, material.k);
-    }
-    return vec3(fresnel_dielectric(v_h, material.eta.x));
-}
-
 // Diffuse and specular reflection times cosine, per steradian. Local frame; zero unless both are on the upper side.
 // Finite everywhere; the V-cavity's G lets the grazing mirror direction grow as 1 / (N.V).
 Spectrum eval_cook_torrance(Material material, vec3 wo, vec3 wi) {
@@ -37,7 +29,7 @@ Spectrum eval_cook_torrance(Material material, vec3 wo, vec3 wi) {
     float v_h = min_((0.5 * h2) * inv_h, 1.0);
     float d = beckmann_lobes_d_slope(tan2_theta(h), material.m0, material.m1, material.w0, material.w1);
     float g = v_cavity_g(n_h, wo.z, v_h, wi.z);
-    vec3 f = fresnel_cook_torrance(material, v_h);
+    vec3 f = fresnel_material(material, v_h);
     // N.L of the cosine cancels the one below.
     float quarter = (material.flags & MATERIAL_D_1982) != 0u ? 1.0 : 0.25;
     float facets = (material.k_s * quarter) * div(d * g, wo.z);

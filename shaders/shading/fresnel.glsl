@@ -5,6 +5,7 @@
 #ifndef SHADING_FRESNEL_GLSL
 #define SHADING_FRESNEL_GLSL
 
+#include "layout/mod.glsl"
 #include "shading/math.glsl"
 
 // (eta cos theta_t)^2 = eta^2 - sin^2 theta_i; zero or less is total internal reflection.
@@ -63,6 +64,27 @@ vec3 fresnel_conductor3(float cos_i, vec3 eta, vec3 k) {
         fresnel_conductor(cos_i, eta.y, k.y),
         fresnel_conductor(cos_i, eta.z, k.z)
     );
+}
+
+// Schlick's approximation f0 + (1 - f0) (1 - cos)^5 for each colour channel. `cos_i`: 0..1. `f0`: at normal incidence.
+// Source: Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", equation 15.
+vec3 fresnel_schlick3(float cos_i, vec3 f0) {
+    float c = 1.0 - clamp_(cos_i, 0.0, 1.0);
+    float c2 = c * c;
+    float c5 = (c2 * c2) * c;
+    return f0 + (vec3(1.0) - f0) * c5;
+}
+
+// Fresnel reflectance of a material's interface seen from outside, linear Rec. 709: conductor, Schlick or dielectric by
+// its flags. `cos_i`: cosine between the interface's or the facet's normal and the direction, 0..1.
+vec3 fresnel_material(Material material, float cos_i) {
+    if ((material.flags & MATERIAL_CONDUCTOR) != 0u) {
+        return fresnel_conductor3(cos_i, material.eta, material.k);
+    }
+    if ((material.flags & MATERIAL_SCHLICK) != 0u) {
+        return fresnel_schlick3(cos_i, material.eta);
+    }
+    return vec3(fresnel_dielectric(cos_i, material.eta.x));
 }
 
 #endif

@@ -17,6 +17,11 @@ struct DirectionSample {
     float pdf;
 };
 
+// A sample of both its parts.
+DirectionSample make_direction(vec3 wi, float pdf) {
+    return DirectionSample(wi, pdf);
+}
+
 // The sample that is to be dropped.
 DirectionSample no_direction() {
     return DirectionSample(vec3(0.0, 0.0, 1.0), 0.0);

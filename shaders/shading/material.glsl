@@ -1,107 +1,188 @@
 // Every model behind one set of functions. `switch` here and `match` in Rust keep the order of `layout/material`.
 //
-// Directions are unit, in the local frame, leaving the surface. `eval` includes the cosine. Mirror and dielectric are
-// directions of zero width, drawn as branches by the integrator: their eval and pdf are zero.
+// Directions are unit, in the local frame, leaving the surface. z leaves the outside of models that transmit
+// (`MATERIAL_TRANSMISSIVE`), where wo.z < 0 is a viewer inside; of the others the caller turns it to the viewer's side, so that
+// wo.z > 0. `eval` includes the cosine. Lobes of zero width (mirror, smooth glass and metal, a plastic's coat) exist for
+// `sample_material` only: their eval and pdf are zero, and `local` and `whitted` draw them as branches.
 #ifndef SHADING_MATERIAL_GLSL
 #define SHADING_MATERIAL_GLSL
 
 #include "layout/mod.glsl"
+#include "shading/ashikhmin.glsl"
 #include "shading/blinn_phong.glsl"
+#include "shading/bsdf.glsl"
 #include "shading/cook_torrance.glsl"
+#include "shading/delta.glsl"
+#include "shading/fresnel.glsl"
+#include "shading/kelemen.glsl"
 #include "shading/lambert.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
+#include "shading/oren_nayar.glsl"
 #include "shading/phong.glsl"
+#include "shading/plastic.glsl"
+#include "shading/rough_conductor.glsl"
+#include "shading/rough_dielectric.glsl"
 #include "shading/spectrum.glsl"
+#include "shading/ward.glsl"
 
-// BRDF times cosine (for the lecture's printed terms: the term over pi), per steradian.
-// Zero unless both directions are on the upper side.
+// Kernels that know the scene leave out the models it does not have (`MODELS_PRESENT` in kernels/bindings.glsl).
+#ifndef HAS_MODEL
+#define HAS_MODEL(model) true
+#endif
+#define ARM(model, call) case model: if (HAS_MODEL(model)) return call; break;
+
+// f |cos theta_i| (for the lecture's printed terms: the term over pi), per steradian, over the whole sphere.
+// Lobes of zero width add nothing.
 Spectrum eval_material(Material material, vec3 wo, vec3 wi) {
     switch (material.model) {
-    case MODEL_LAMBERT: return eval_lambert(material, wo, wi);
-    case MODEL_PHONG: return eval_phong(material, wo, wi);
-    case MODEL_BLINN_PHONG: return eval_blinn_phong(material, wo, wi);
-    case MODEL_COOK_TORRANCE: return eval_cook_torrance(material, wo, wi);
-    // MODEL_MIRROR, MODEL_DIELECTRIC, MODEL_EMISSIVE
-    default: return spectrum_zero();
+    ARM(MODEL_LAMBERT, eval_lambert(material, wo, wi))
+    ARM(MODEL_PHONG, eval_phong(material, wo, wi))
+    ARM(MODEL_BLINN_PHONG, eval_blinn_phong(material, wo, wi))
+    ARM(MODEL_COOK_TORRANCE, eval_cook_torrance(material, wo, wi))
+    ARM(MODEL_OREN_NAYAR, eval_oren_nayar(material, wo, wi))
+    ARM(MODEL_WARD, eval_ward(material, wo, wi))
+    ARM(MODEL_ASHIKHMIN_SHIRLEY, eval_ashikhmin(material, wo, wi))
+    ARM(MODEL_KELEMEN, eval_kelemen(material, wo, wi))
+    ARM(MODEL_ROUGH_CONDUCTOR, eval_rough_conductor(material, wo, wi))
+    ARM(MODEL_ROUGH_DIELECTRIC, eval_rough_dielectric(material, wo, wi))
+    ARM(MODEL_PLASTIC, eval_plastic(material, wo, wi))
+    ARM(MODEL_ROUGH_PLASTIC, eval_rough_plastic(material, wo, wi))
+    default: break;
     }
+    return spectrum_zero();
 }
 
-// A direction to the light with density `pdf_material`; pdf 0 if it is to be dropped.
-// `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, chooses among the model's lobes.
-DirectionSample sample_material(Material material, vec3 wo, vec2 u, float u_lobe) {
-    switch (material.model) {
-    case MODEL_LAMBERT: return sample_lambert(material, wo, u, u_lobe);
-    case MODEL_PHONG: return sample_phong(material, wo, u, u_lobe);
-    case MODEL_BLINN_PHONG: return sample_blinn_phong(material, wo, u, u_lobe);
-    case MODEL_COOK_TORRANCE: return sample_cook_torrance(material, wo, u, u_lobe);
-    // MODEL_MIRROR, MODEL_DIELECTRIC, MODEL_EMISSIVE
-    default: return no_direction();
-    }
-}
-
-// Density of `sample_material`, per solid angle; its integral over the upper side is at most 1.
+// Density of `sample_material` without its lobes of zero width, per solid angle; its integral is at most 1.
 float pdf_material(Material material, vec3 wo, vec3 wi) {
     switch (material.model) {
-    case MODEL_LAMBERT: return pdf_lambert(material, wo, wi);
-    case MODEL_PHONG: return pdf_phong(material, wo, wi);
-    case MODEL_BLINN_PHONG: return pdf_blinn_phong(material, wo, wi);
-    case MODEL_COOK_TORRANCE: return pdf_cook_torrance(material, wo, wi);
-    // MODEL_MIRROR, MODEL_DIELECTRIC, MODEL_EMISSIVE
-    default: return 0.0;
+    ARM(MODEL_LAMBERT, pdf_lambert(material, wo, wi))
+    ARM(MODEL_PHONG, pdf_phong(material, wo, wi))
+    ARM(MODEL_BLINN_PHONG, pdf_blinn_phong(material, wo, wi))
+    ARM(MODEL_COOK_TORRANCE, pdf_cook_torrance(material, wo, wi))
+    ARM(MODEL_OREN_NAYAR, pdf_oren_nayar(material, wo, wi))
+    ARM(MODEL_WARD, pdf_ward(material, wo, wi))
+    ARM(MODEL_ASHIKHMIN_SHIRLEY, pdf_ashikhmin(material, wo, wi))
+    ARM(MODEL_KELEMEN, pdf_kelemen(material, wo, wi))
+    ARM(MODEL_ROUGH_CONDUCTOR, pdf_rough_conductor(material, wo, wi))
+    ARM(MODEL_ROUGH_DIELECTRIC, pdf_rough_dielectric(material, wo, wi))
+    ARM(MODEL_PLASTIC, pdf_plastic(material, wo, wi))
+    ARM(MODEL_ROUGH_PLASTIC, pdf_rough_plastic(material, wo, wi))
+    default: break;
     }
+    return 0.0;
 }
 
-// What the ambient radiance I_a is multiplied by: k_a O_d (row 4); zero for mirror, dielectric and emissive.
+// The direction that models of one side choose, with density `pdf_material`; pdf 0 if it is to be dropped.
+DirectionSample sample_direction(Material material, vec3 wo, vec2 u, float u_lobe) {
+    switch (material.model) {
+    ARM(MODEL_LAMBERT, sample_lambert(material, wo, u, u_lobe))
+    ARM(MODEL_PHONG, sample_phong(material, wo, u, u_lobe))
+    ARM(MODEL_BLINN_PHONG, sample_blinn_phong(material, wo, u, u_lobe))
+    ARM(MODEL_COOK_TORRANCE, sample_cook_torrance(material, wo, u, u_lobe))
+    ARM(MODEL_OREN_NAYAR, sample_oren_nayar(material, wo, u, u_lobe))
+    ARM(MODEL_WARD, sample_ward(material, wo, u, u_lobe))
+    ARM(MODEL_ASHIKHMIN_SHIRLEY, sample_ashikhmin(material, wo, u, u_lobe))
+    ARM(MODEL_KELEMEN, sample_kelemen(material, wo, u, u_lobe))
+    ARM(MODEL_ROUGH_CONDUCTOR, sample_rough_conductor(material, wo, u, u_lobe))
+    ARM(MODEL_ROUGH_PLASTIC, sample_rough_plastic(material, wo, u, u_lobe))
+    default: break;
+    }
+    return no_direction();
+}
+
+// A direction to the light, lobes of zero width included; pdf 0 if it is to be dropped.
+// `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, excluding 1, chooses among the model's lobes.
+BsdfSample sample_material(Material material, vec3 wo, vec2 u, float u_lobe) {
+    switch (material.model) {
+    ARM(MODEL_MIRROR, sample_mirror(material, wo))
+    ARM(MODEL_DIELECTRIC, sample_dielectric(material, wo, u_lobe))
+    ARM(MODEL_CONDUCTOR, sample_conductor(material, wo))
+    ARM(MODEL_ROUGH_DIELECTRIC, sample_rough_dielectric(material, wo, u, u_lobe))
+    ARM(MODEL_THIN_DIELECTRIC, sample_thin_dielectric(material, wo, u_lobe))
+    ARM(MODEL_PLASTIC, sample_plastic(material, wo, u, u_lobe))
+    ARM(MODEL_NULL, sample_null(wo))
+    default: break;
+    }
+    DirectionSample direction = sample_direction(material, wo, u, u_lobe);
+    if (direction.pdf <= 0.0) {
+        return no_sample();
+    }
+    return finish_sample(direction.wi, direction.pdf, eval_material(material, wo, direction.wi), 1.0, 0u);
+}
+
+// What the ambient radiance I_a is multiplied by: k_a O_d (row 4); zero for what only mirrors or transmits.
 Spectrum ambient_material(Material material) {
     switch (material.model) {
-    case MODEL_LAMBERT:
-    case MODEL_PHONG:
-    case MODEL_BLINN_PHONG:
-    case MODEL_COOK_TORRANCE: return spectrum_from_rgb(material.color * material.k_a);
-    // MODEL_MIRROR, MODEL_DIELECTRIC, MODEL_EMISSIVE
-    default: return spectrum_zero();
+    case MODEL_MIRROR:
+    case MODEL_DIELECTRIC:
+    case MODEL_EMISSIVE:
+    case MODEL_CONDUCTOR:
+    case MODEL_ROUGH_DIELECTRIC:
+    case MODEL_THIN_DIELECTRIC:
+    case MODEL_NULL:
+    case MODEL_BLEND: return spectrum_zero();
+    default: return spectrum_from_rgb(material.color * material.k_a);
     }
 }
 
-// Weight of the branch that follows the mirror direction (row 24): a mirror's reflectance, else k_r O_s.
-// Zero below the horizon, for a dielectric (its branches are weighted by Fresnel) and for an emissive surface.
-// `cos_o`: cosine between normal and `wo`.
+// Weight of the branch that follows the mirror direction (row 24): what a mirror, a smooth metal or a plastic's coat
+// reflects, else k_r O_s. Zero below the horizon, for glass (its branches are weighted by Fresnel), for what is not there
+// and for an emissive surface. `cos_o`: cosine between normal and `wo`.
 Spectrum mirror_weight(Material material, float cos_o) {
     if (cos_o <= COS_MIN) {
         return spectrum_zero();
     }
     switch (material.model) {
-    case MODEL_LAMBERT:
-    case MODEL_PHONG:
-    case MODEL_BLINN_PHONG:
-    case MODEL_COOK_TORRANCE: return spectrum_from_rgb(material.specular_color * material.k_r);
     case MODEL_MIRROR: return spectrum_from_rgb(material.color);
-    // MODEL_DIELECTRIC, MODEL_EMISSIVE
-    default: return spectrum_zero();
+    case MODEL_CONDUCTOR:
+    case MODEL_PLASTIC: return spectrum_from_rgb(material.specular_color * fresnel_material(material, cos_o));
+    case MODEL_DIELECTRIC:
+    case MODEL_EMISSIVE:
+    case MODEL_ROUGH_DIELECTRIC:
+    case MODEL_THIN_DIELECTRIC:
+    case MODEL_NULL:
+    case MODEL_BLEND: return spectrum_zero();
+    default: return spectrum_from_rgb(material.specular_color * material.k_r);
     }
 }
 
-// Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) for Cook-Torrance.
+// Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) where there is an interface.
 Spectrum albedo_material(Material material) {
     vec3 diffuse = material.color * material.k_d;
     vec3 specular = material.specular_color * material.k_s;
     vec3 rgb = vec3(0.0);
     switch (material.model) {
-    case MODEL_LAMBERT: rgb = diffuse; break;
+    case MODEL_LAMBERT:
+    case MODEL_OREN_NAYAR: rgb = diffuse; break;
     case MODEL_PHONG:
-    case MODEL_BLINN_PHONG: rgb = diffuse + specular; break;
-    case MODEL_COOK_TORRANCE: rgb = diffuse + specular * fresnel_cook_torrance(material, 1.0); break;
-    case MODEL_MIRROR: rgb = material.color; break;
-    case MODEL_DIELECTRIC: rgb = material.specular_color; break;
-    case MODEL_EMISSIVE: rgb = material.color; break;
+    case MODEL_BLINN_PHONG:
+    case MODEL_WARD:
+    case MODEL_ASHIKHMIN_SHIRLEY: rgb = diffuse + specular; break;
+    case MODEL_COOK_TORRANCE: rgb = diffuse + specular * fresnel_material(material, 1.0); break;
+    case MODEL_CONDUCTOR:
+    case MODEL_ROUGH_CONDUCTOR: rgb = material.specular_color * fresnel_material(material, 1.0); break;
+    case MODEL_DIELECTRIC:
+    case MODEL_ROUGH_DIELECTRIC:
+    case MODEL_THIN_DIELECTRIC: rgb = material.specular_color; break;
+    case MODEL_NULL:
+    case MODEL_BLEND: break;
+    default: rgb = material.color; break;
     }
     return spectrum_from_rgb(vec3(clamp_(rgb.x, 0.0, 1.0), clamp_(rgb.y, 0.0, 1.0), clamp_(rgb.z, 0.0, 1.0)));
 }
 
-// True if the model reflects and refracts into single directions only.
+// True if the model has lobes of zero width only: no light needs to be sampled for it.
 bool is_delta(Material material) {
-    return material.model == MODEL_MIRROR || material.model == MODEL_DIELECTRIC;
+    switch (material.model) {
+    case MODEL_MIRROR:
+    case MODEL_DIELECTRIC:
+    case MODEL_CONDUCTOR:
+    case MODEL_THIN_DIELECTRIC:
+    case MODEL_NULL: return true;
+    default: return false;
+    }
 }
 
+#undef ARM
 #endif

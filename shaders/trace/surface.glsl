@@ -118,6 +118,24 @@ Surface triangle_surface(Instance instance, Hit hit) {
     );
 }
 
+// Where the texture coordinate u grows on `surface`, world space, any length; zero where it has no direction.
+vec3 surface_tangent(Surface surface) {
+    Instance instance = load_instance(surface.instance);
+    if (instance.kind == KIND_SPHERE) {
+        vec3 point = transform_point(instance.to_object, surface.position);
+        return transform_vector(instance.to_world, vec3(point.z, 0.0, -point.x));
+    }
+    Face face = load_face(instance.first_face + surface.primitive);
+    Vertex p0 = load_vertex(face.i0);
+    Vertex p1 = load_vertex(face.i1);
+    Vertex p2 = load_vertex(face.i2);
+    float dv1 = p1.v - p0.v;
+    float dv2 = p2.v - p0.v;
+    float area = (p1.u - p0.u) * dv2 - (p2.u - p0.u) * dv1;
+    vec3 along = (p1.position - p0.position) * dv2 - (p2.position - p0.position) * dv1;
+    return transform_vector(instance.to_world, area < 0.0 ? -along : along);
+}
+
 // The surface at `hit`, which `trace_closest` found for `ray` (not a miss). The position is recomputed from the
 // barycentric weights or, on a sphere, pushed onto it, and does not inherit the error of t.
 Surface surface_at(Ray ray, Hit hit) {

@@ -29,6 +29,31 @@ vec3 facing_normal(Surface surface, vec3 wo) {
     return normal;
 }
 
+// The frame in which `material` is shaded for a viewer at `wo`: z is the normal on the viewer's side, or for models that
+// transmit the one that leaves the outside; x follows the texture coordinates where the model has a direction.
+Frame shading_frame(Surface surface, Material material, vec3 wo) {
+    vec3 facing = facing_normal(surface, wo);
+    bool inside = (material.flags & MATERIAL_TRANSMISSIVE) != 0u && dot3(surface.normal_geometric, wo) < 0.0;
+    vec3 normal = inside ? -facing : facing;
+    if ((material.flags & MATERIAL_ANISOTROPIC) != 0u) {
+        return frame_from_tangent(normal, surface_tangent(surface));
+    }
+    return frame_from_normal(normal);
+}
+
+// True if a viewer at `wo` sees the back of a surface that reflects on its front only.
+bool is_hidden_back(Surface surface, Material material, vec3 wo) {
+    return (material.flags & MATERIAL_ONE_SIDED) != 0u && dot3(surface.normal_geometric, wo) < 0.0;
+}
+
+// Radiance the surface emits towards `wo`.
+vec3 emitted(Surface surface, Material material, vec3 wo) {
+    if ((material.flags & MATERIAL_EMIT_ONE_SIDED) != 0u && dot3(surface.normal_geometric, wo) < 0.0) {
+        return vec3(0.0);
+    }
+    return material.emission;
+}
+
 // How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
 float own_weight(Material material) {
     return (material.flags & MATERIAL_FILTERED) != 0u ? 1.0 : 1.0 - material.k_t;
@@ -44,15 +69,19 @@ Spectrum light_contribution(Spectrum weight, Material material, Frame frame, vec
 void shade_local(PathState path, SampleKey key, Surface surface, Material material) {
     vec3 wo = -path.ray.direction;
     Spectrum weight = path.throughput * own_weight(material);
-    Spectrum ambient = spectrum_from_rgb(header.ambient) * ambient_material(material);
-    Spectrum own = weight * (ambient + spectrum_from_rgb(material.emission));
+    bool hidden = is_hidden_back(surface, material, wo);
+    Spectrum reflected = spectrum_from_rgb(header.ambient) * ambient_material(material);
+    if (hidden) {
+        reflected = spectrum_zero();
+    }
+    Spectrum own = weight * (reflected + spectrum_from_rgb(emitted(surface, material, wo)));
     // A mirror or a glass covers the background like anything else.
     float alpha = path.coverage * (1.0 - material.k_t);
     uint dither = dither_hash(key, DITHER_SURFACE);
     add_contribution(header.film_scale, path.slot, vec4(own.x, own.y, own.z, alpha), dither);
 
-    if (material.model != MODEL_MIRROR && material.model != MODEL_DIELECTRIC) {
-        Frame frame = frame_from_normal(facing_normal(surface, wo));
+    if (!is_delta(material) && !hidden) {
+        Frame frame = shading_frame(surface, material, wo);
         for (uint index = 0u; index < header.light_count; index++) {
             Light light = load_light(index);
             LightSample lit = sample_light(light, surface.position);

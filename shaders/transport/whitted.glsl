@@ -2,6 +2,7 @@
 #ifndef TRANSPORT_WHITTED_GLSL
 #define TRANSPORT_WHITTED_GLSL
 
+#include "shading/delta.glsl"
 #include "shading/dielectric.glsl"
 #include "shading/frame.glsl"
 #include "shading/fresnel.glsl"
@@ -41,11 +42,20 @@ vec3 mirror_direction(Surface surface, vec3 wo) {
     return geometric * (2.0 * cos_geometric) - wo;
 }
 
-// Follows the mirror branch of any material and both branches of a smooth dielectric, each with its Fresnel weight.
+// True if whitted follows what the material transmits: glass, drawn smooth even if it is rough, and thin panes.
+bool is_refracting(Material material) {
+    return material.model == MODEL_DIELECTRIC || material.model == MODEL_ROUGH_DIELECTRIC ||
+        material.model == MODEL_THIN_DIELECTRIC;
+}
+
+// Follows the mirror branch of any material and both branches of a dielectric, each with its Fresnel weight.
 // Media do not nest: a ray that leaves a dielectric is outside. Radiance is not scaled by eta^2 (Whitted's model).
 void shade_whitted(PathState path, Surface surface, Material material) {
     vec3 wo = -path.ray.direction;
-    if (material.model != MODEL_DIELECTRIC) {
+    if (!is_refracting(material)) {
+        if (is_hidden_back(surface, material, wo)) {
+            return;
+        }
         vec3 normal = facing_normal(surface, wo);
         Spectrum weight = mirror_weight(material, dot3(normal, wo)) * own_weight(material);
         push_branch(path, surface, mirror_direction(surface, wo), weight, LOBE_MIRROR);
@@ -55,8 +65,16 @@ void shade_whitted(PathState path, Surface surface, Material material) {
     float eta = entering ? material.eta.x : rcp(material.eta.x);
     Frame frame = frame_from_normal(facing_normal(surface, wo));
     vec3 wo_local = to_local(frame, wo);
-    float reflectance = fresnel_dielectric(wo_local.z, eta);
-    push_branch(path, surface, mirror_direction(surface, wo), vec4(reflectance), LOBE_MIRROR);
+    bool thin = material.model == MODEL_THIN_DIELECTRIC;
+    float reflectance = thin ? thin_reflectance(wo_local.z, material.eta.x) : fresnel_dielectric(wo_local.z, eta);
+    vec3 tint = material.color * reflectance;
+    vec4 mirrored = vec4(tint.x, tint.y, tint.z, reflectance);
+    push_branch(path, surface, mirror_direction(surface, wo), mirrored, LOBE_MIRROR);
+    Spectrum weight = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
+    if (thin) {
+        push_branch(path, surface, path.ray.direction, weight, LOBE_REFRACT);
+        return;
+    }
     Refraction refraction = refract_local(wo_local, eta);
     if (refraction.total) {
         return;
@@ -64,7 +82,6 @@ void shade_whitted(PathState path, Surface surface, Material material) {
     PathState inside = path;
     inside.eta = entering ? material.eta.x : 1.0;
     inside.absorption = entering ? material.absorption : vec3(0.0);
-    Spectrum weight = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
     push_branch(inside, surface, to_world(frame, refraction.wt), weight, LOBE_REFRACT);
 }
 

@@ -3,12 +3,14 @@
 //! Whatever reaches a pixel is computed in f64 with libm and rounded once, so that every machine bakes the same bits.
 //! Only the shape of the hierarchies may differ; it never decides what is hit.
 
+mod albedo;
 mod bvh;
 pub mod data;
 pub mod filter;
 mod geometry;
 mod instance;
-mod material;
+mod light;
+mod model;
 mod scene;
 pub mod srgb;
 
@@ -32,6 +34,9 @@ pub enum BakeError {
     /// A model whose shading has not landed yet.
     #[error("material \"{name}\": its model cannot be drawn yet")]
     Unfinished { name: String },
+    /// A blend of blends of blends.
+    #[error("material \"{name}\" blends more than 8 materials, or itself")]
+    Blend { name: String },
     /// The eye is its own target, or the like.
     #[error("the camera {0}")]
     Camera(&'static str),

@@ -4,7 +4,8 @@ use super::bvh::{Bounds, TOP_LEAF, Tree};
 use super::filter::filter_table;
 use super::geometry::{BakedMesh, bake_mesh};
 use super::instance::{place, top_margin};
-use super::material::{bake_light, bake_material, bake_texture, casts_shadow, unit};
+use super::light::{bake_light, bake_texture, unit};
+use super::model::{bake_blends, bake_material, casts_shadow};
 use super::srgb::srgb_table;
 use super::{BakeError, SceneData};
 use crate::layout::{
@@ -23,6 +24,8 @@ const DEEP_PART: u32 = 12;
 /// Bakes a scene whose indices are valid (`scene::load` guarantees it).
 pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     let mut data = SceneData::default();
+    data.header = header(scene)?;
+    bake_tables(&scene.film.filter, &mut data);
     let default_material = bake_materials(scene, &mut data)?;
     data.lights = scene.lights.iter().map(bake_light).collect();
     for texture in &scene.textures {
@@ -30,8 +33,6 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     }
     check_count("words of texels", data.texels.len())?;
     let meshes = bake_meshes(scene, default_material);
-    data.header = header(scene)?;
-    bake_tables(&scene.film.filter, &mut data);
     let mut parts = place_objects(scene, &meshes, default_material, &mut data)?;
     parts.meshes = meshes;
     build_hierarchy(parts, &mut data)?;
@@ -50,7 +51,7 @@ fn check_count(what: &'static str, count: usize) -> Result<(), BakeError> {
 /// Bakes all materials, and one more where an object or face names none. Returns the id of that one.
 fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, BakeError> {
     for material in &scene.materials {
-        data.materials.push(bake_material(material)?);
+        data.materials.push(bake_material(material, &mut data.tables)?);
     }
     let nameless = |object: &Object| match object.geometry {
         Geometry::Sphere => object.material.is_none(),
@@ -58,8 +59,10 @@ fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, Bak
     };
     let default = MaterialId(scene.materials.len() as u32);
     if scene.objects.iter().any(nameless) {
-        data.materials.push(bake_material(&Material::grey("default"))?);
+        data.materials.push(bake_material(&Material::grey("default"), &mut data.tables)?);
     }
+    bake_blends(&scene.materials, &mut data.materials)?;
+    check_count("table entries", data.tables.len())?;
     Ok(default)
 }
 

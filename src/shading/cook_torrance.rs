@@ -5,23 +5,14 @@
 //! D G F / ((N.L)(N.V)), four times the above; `MATERIAL_D_1982` draws it so.
 //! Source: Cook and Torrance 1982, "A Reflectance Model for Computer Graphics".
 
-use crate::layout::{MATERIAL_CONDUCTOR, MATERIAL_D_1982, Material};
-use crate::shading::fresnel::{fresnel_conductor3, fresnel_dielectric};
+use crate::layout::{MATERIAL_D_1982, Material};
+use crate::shading::fresnel::fresnel_material;
 use crate::shading::lobe::{DirectionSample, no_direction, on_upper_side, reflect_about, specular_probability};
 use crate::shading::math::{INV_PI, div, dot3, min_, rsqrt};
 use crate::shading::microfacet::{beckmann_lobes_d_slope, sample_beckmann, tan2_theta, v_cavity_g};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_zero};
 use crate::shading::warp::square_to_cosine_hemisphere;
 use glam::{Vec2, Vec3};
-
-/// Fresnel reflectance of the facets, linear Rec. 709. `v_h`: cosine of the half angle between the directions, 0..1.
-#[inline]
-pub fn fresnel_cook_torrance(material: &Material, v_h: f32) -> Vec3 {
-    if (material.flags & MATERIAL_CONDUCTOR) != 0 {
-        return fresnel_conductor3(v_h, material.eta, material.k);
-    }
-    Vec3::splat(fresnel_dielectric(v_h, material.eta.x))
-}
 
 /// Diffuse and specular reflection times cosine, per steradian. Local frame; zero unless both are on the upper side.
 /// Finite everywhere; the V-cavity's G lets the grazing mirror direction grow as 1 / (N.V).
@@ -38,7 +29,7 @@ pub fn eval_cook_torrance(material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
     let v_h = min_((0.5 * h2) * inv_h, 1.0);
     let d = beckmann_lobes_d_slope(tan2_theta(h), material.m0, material.m1, material.w0, material.w1);
     let g = v_cavity_g(n_h, wo.z, v_h, wi.z);
-    let f = fresnel_cook_torrance(material, v_h);
+    let f = fresnel_material(material, v_h);
     // N.L of the cosine cancels the one below.
     let quarter = if (material.flags & MATERIAL_D_1982) != 0 { 1.0 } else { 0.25 };
     let facets = (material.k_s * quarter) * div(d * g, wo.z);

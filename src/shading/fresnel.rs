@@ -3,6 +3,7 @@
 //! Both functions are exact for unpolarised light. Source: Born and Wolf 1999, "Principles of Optics", section 1.5.2
 //! (dielectrics) and 14.2 (metals), written without complex numbers.
 
+use crate::layout::{MATERIAL_CONDUCTOR, MATERIAL_SCHLICK, Material};
 use crate::shading::math::{clamp_, div, max_, min_, sqrt_};
 use glam::Vec3;
 
@@ -66,6 +67,29 @@ pub fn fresnel_conductor3(cos_i: f32, eta: Vec3, k: Vec3) -> Vec3 {
         fresnel_conductor(cos_i, eta.y, k.y),
         fresnel_conductor(cos_i, eta.z, k.z),
     )
+}
+
+/// Schlick's approximation f0 + (1 - f0) (1 - cos)^5 for each colour channel. `cos_i`: 0..1. `f0`: at normal incidence.
+/// Source: Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", equation 15.
+#[inline]
+pub fn fresnel_schlick3(cos_i: f32, f0: Vec3) -> Vec3 {
+    let c = 1.0 - clamp_(cos_i, 0.0, 1.0);
+    let c2 = c * c;
+    let c5 = (c2 * c2) * c;
+    f0 + (Vec3::splat(1.0) - f0) * c5
+}
+
+/// Fresnel reflectance of a material's interface seen from outside, linear Rec. 709: conductor, Schlick or dielectric by
+/// its flags. `cos_i`: cosine between the interface's or the facet's normal and the direction, 0..1.
+#[inline]
+pub fn fresnel_material(material: &Material, cos_i: f32) -> Vec3 {
+    if (material.flags & MATERIAL_CONDUCTOR) != 0 {
+        return fresnel_conductor3(cos_i, material.eta, material.k);
+    }
+    if (material.flags & MATERIAL_SCHLICK) != 0 {
+        return fresnel_schlick3(cos_i, material.eta);
+    }
+    Vec3::splat(fresnel_dielectric(cos_i, material.eta.x))
 }
 
 #[cfg(test)]

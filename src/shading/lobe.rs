@@ -17,6 +17,12 @@ pub struct DirectionSample {
     pub pdf: f32,
 }
 
+/// A sample of both its parts.
+#[inline]
+pub fn make_direction(wi: Vec3, pdf: f32) -> DirectionSample {
+    DirectionSample { wi, pdf }
+}
+
 /// The sample that is to be dropped.
 #[inline]
 pub fn no_direction() -> DirectionSample {

@@ -1,113 +1,176 @@
 //! Every model behind one set of functions. `match` here and `switch` in GLSL keep the order of `layout/material`.
 //!
-//! Directions are unit, in the local frame, leaving the surface. `eval` includes the cosine. Mirror and dielectric are
-//! directions of zero width, drawn as branches by the integrator: their eval and pdf are zero.
+//! Directions are unit, in the local frame, leaving the surface. z leaves the outside of models that transmit
+//! (`MATERIAL_TRANSMISSIVE`), where wo.z < 0 is a viewer inside; of the others the caller turns it to the viewer's side, so that
+//! wo.z > 0. `eval` includes the cosine. Lobes of zero width (mirror, smooth glass and metal, a plastic's coat) exist for
+//! `sample_material` only: their eval and pdf are zero, and `local` and `whitted` draw them as branches.
 
 use crate::layout::{
-    MODEL_BLINN_PHONG, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_LAMBERT, MODEL_MIRROR, MODEL_PHONG,
-    Material,
+    MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC,
+    MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MIRROR, MODEL_NULL, MODEL_OREN_NAYAR, MODEL_PHONG,
+    MODEL_PLASTIC, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC, MODEL_ROUGH_PLASTIC, MODEL_THIN_DIELECTRIC,
+    MODEL_WARD, Material, SceneView,
 };
+use crate::shading::ashikhmin::{eval_ashikhmin, pdf_ashikhmin, sample_ashikhmin};
 use crate::shading::blinn_phong::{eval_blinn_phong, pdf_blinn_phong, sample_blinn_phong};
-use crate::shading::cook_torrance::{
-    eval_cook_torrance, fresnel_cook_torrance, pdf_cook_torrance, sample_cook_torrance,
-};
+use crate::shading::bsdf::{BsdfSample, finish_sample, no_sample};
+use crate::shading::cook_torrance::{eval_cook_torrance, pdf_cook_torrance, sample_cook_torrance};
+use crate::shading::delta::{sample_conductor, sample_dielectric, sample_mirror, sample_null, sample_thin_dielectric};
+use crate::shading::fresnel::fresnel_material;
+use crate::shading::kelemen::{eval_kelemen, pdf_kelemen, sample_kelemen};
 use crate::shading::lambert::{eval_lambert, pdf_lambert, sample_lambert};
 use crate::shading::lobe::{COS_MIN, DirectionSample, no_direction};
 use crate::shading::math::clamp_;
+use crate::shading::oren_nayar::{eval_oren_nayar, pdf_oren_nayar, sample_oren_nayar};
 use crate::shading::phong::{eval_phong, pdf_phong, sample_phong};
+use crate::shading::plastic::{
+    eval_plastic, eval_rough_plastic, pdf_plastic, pdf_rough_plastic, sample_plastic, sample_rough_plastic,
+};
+use crate::shading::rough_conductor::{eval_rough_conductor, pdf_rough_conductor, sample_rough_conductor};
+use crate::shading::rough_dielectric::{eval_rough_dielectric, pdf_rough_dielectric, sample_rough_dielectric};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_zero};
+use crate::shading::ward::{eval_ward, pdf_ward, sample_ward};
 use glam::{Vec2, Vec3};
 
-/// BRDF times cosine (for the lecture's printed terms: the term over pi), per steradian.
-/// Zero unless both directions are on the upper side.
+/// f |cos theta_i| (for the lecture's printed terms: the term over pi), per steradian, over the whole sphere.
+/// Lobes of zero width add nothing.
 #[inline]
-pub fn eval_material(material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
+pub fn eval_material(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
     match material.model {
         MODEL_LAMBERT => eval_lambert(material, wo, wi),
         MODEL_PHONG => eval_phong(material, wo, wi),
         MODEL_BLINN_PHONG => eval_blinn_phong(material, wo, wi),
         MODEL_COOK_TORRANCE => eval_cook_torrance(material, wo, wi),
-        // MODEL_MIRROR, MODEL_DIELECTRIC, MODEL_EMISSIVE
+        MODEL_OREN_NAYAR => eval_oren_nayar(material, wo, wi),
+        MODEL_WARD => eval_ward(material, wo, wi),
+        MODEL_ASHIKHMIN_SHIRLEY => eval_ashikhmin(material, wo, wi),
+        MODEL_KELEMEN => eval_kelemen(scene, material, wo, wi),
+        MODEL_ROUGH_CONDUCTOR => eval_rough_conductor(scene, material, wo, wi),
+        MODEL_ROUGH_DIELECTRIC => eval_rough_dielectric(material, wo, wi),
+        MODEL_PLASTIC => eval_plastic(material, wo, wi),
+        MODEL_ROUGH_PLASTIC => eval_rough_plastic(scene, material, wo, wi),
         _ => spectrum_zero(),
     }
 }
 
-/// A direction to the light with density `pdf_material`; pdf 0 if it is to be dropped.
-/// `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, chooses among the model's lobes.
+/// Density of `sample_material` without its lobes of zero width, per solid angle; its integral is at most 1.
 #[inline]
-pub fn sample_material(material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
-    match material.model {
-        MODEL_LAMBERT => sample_lambert(material, wo, u, u_lobe),
-        MODEL_PHONG => sample_phong(material, wo, u, u_lobe),
-        MODEL_BLINN_PHONG => sample_blinn_phong(material, wo, u, u_lobe),
-        MODEL_COOK_TORRANCE => sample_cook_torrance(material, wo, u, u_lobe),
-        // MODEL_MIRROR, MODEL_DIELECTRIC, MODEL_EMISSIVE
-        _ => no_direction(),
-    }
-}
-
-/// Density of `sample_material`, per solid angle; its integral over the upper side is at most 1.
-#[inline]
-pub fn pdf_material(material: &Material, wo: Vec3, wi: Vec3) -> f32 {
+pub fn pdf_material(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> f32 {
     match material.model {
         MODEL_LAMBERT => pdf_lambert(material, wo, wi),
         MODEL_PHONG => pdf_phong(material, wo, wi),
         MODEL_BLINN_PHONG => pdf_blinn_phong(material, wo, wi),
         MODEL_COOK_TORRANCE => pdf_cook_torrance(material, wo, wi),
-        // MODEL_MIRROR, MODEL_DIELECTRIC, MODEL_EMISSIVE
+        MODEL_OREN_NAYAR => pdf_oren_nayar(material, wo, wi),
+        MODEL_WARD => pdf_ward(material, wo, wi),
+        MODEL_ASHIKHMIN_SHIRLEY => pdf_ashikhmin(material, wo, wi),
+        MODEL_KELEMEN => pdf_kelemen(scene, material, wo, wi),
+        MODEL_ROUGH_CONDUCTOR => pdf_rough_conductor(scene, material, wo, wi),
+        MODEL_ROUGH_DIELECTRIC => pdf_rough_dielectric(material, wo, wi),
+        MODEL_PLASTIC => pdf_plastic(material, wo, wi),
+        MODEL_ROUGH_PLASTIC => pdf_rough_plastic(scene, material, wo, wi),
         _ => 0.0,
     }
 }
 
-/// What the ambient radiance I_a is multiplied by: k_a O_d (row 4); zero for mirror, dielectric and emissive.
+/// The direction that models of one side choose, with density `pdf_material`; pdf 0 if it is to be dropped.
 #[inline]
-pub fn ambient_material(material: &Material) -> Spectrum {
+fn sample_direction(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
     match material.model {
-        MODEL_LAMBERT | MODEL_PHONG | MODEL_BLINN_PHONG | MODEL_COOK_TORRANCE => {
-            spectrum_from_rgb(material.color * material.k_a)
-        }
-        // MODEL_MIRROR, MODEL_DIELECTRIC, MODEL_EMISSIVE
-        _ => spectrum_zero(),
+        MODEL_LAMBERT => sample_lambert(material, wo, u, u_lobe),
+        MODEL_PHONG => sample_phong(material, wo, u, u_lobe),
+        MODEL_BLINN_PHONG => sample_blinn_phong(material, wo, u, u_lobe),
+        MODEL_COOK_TORRANCE => sample_cook_torrance(material, wo, u, u_lobe),
+        MODEL_OREN_NAYAR => sample_oren_nayar(material, wo, u, u_lobe),
+        MODEL_WARD => sample_ward(material, wo, u, u_lobe),
+        MODEL_ASHIKHMIN_SHIRLEY => sample_ashikhmin(material, wo, u, u_lobe),
+        MODEL_KELEMEN => sample_kelemen(scene, material, wo, u, u_lobe),
+        MODEL_ROUGH_CONDUCTOR => sample_rough_conductor(scene, material, wo, u, u_lobe),
+        MODEL_ROUGH_PLASTIC => sample_rough_plastic(scene, material, wo, u, u_lobe),
+        _ => no_direction(),
     }
 }
 
-/// Weight of the branch that follows the mirror direction (row 24): a mirror's reflectance, else k_r O_s.
-/// Zero below the horizon, for a dielectric (its branches are weighted by Fresnel) and for an emissive surface.
-/// `cos_o`: cosine between normal and `wo`.
+/// A direction to the light, lobes of zero width included; pdf 0 if it is to be dropped.
+/// `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, excluding 1, chooses among the model's lobes.
+#[inline]
+pub fn sample_material(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> BsdfSample {
+    match material.model {
+        MODEL_MIRROR => sample_mirror(material, wo),
+        MODEL_DIELECTRIC => sample_dielectric(material, wo, u_lobe),
+        MODEL_CONDUCTOR => sample_conductor(material, wo),
+        MODEL_ROUGH_DIELECTRIC => sample_rough_dielectric(material, wo, u, u_lobe),
+        MODEL_THIN_DIELECTRIC => sample_thin_dielectric(material, wo, u_lobe),
+        MODEL_PLASTIC => sample_plastic(material, wo, u, u_lobe),
+        MODEL_NULL => sample_null(wo),
+        _ => {
+            let direction = sample_direction(scene, material, wo, u, u_lobe);
+            if direction.pdf <= 0.0 {
+                return no_sample();
+            }
+            finish_sample(direction.wi, direction.pdf, eval_material(scene, material, wo, direction.wi), 1.0, 0)
+        }
+    }
+}
+
+/// What the ambient radiance I_a is multiplied by: k_a O_d (row 4); zero for what only mirrors or transmits.
+#[inline]
+pub fn ambient_material(material: &Material) -> Spectrum {
+    match material.model {
+        MODEL_MIRROR
+        | MODEL_DIELECTRIC
+        | MODEL_EMISSIVE
+        | MODEL_CONDUCTOR
+        | MODEL_ROUGH_DIELECTRIC
+        | MODEL_THIN_DIELECTRIC
+        | MODEL_NULL
+        | MODEL_BLEND => spectrum_zero(),
+        _ => spectrum_from_rgb(material.color * material.k_a),
+    }
+}
+
+/// Weight of the branch that follows the mirror direction (row 24): what a mirror, a smooth metal or a plastic's coat
+/// reflects, else k_r O_s. Zero below the horizon, for glass (its branches are weighted by Fresnel), for what is not there
+/// and for an emissive surface. `cos_o`: cosine between normal and `wo`.
 #[inline]
 pub fn mirror_weight(material: &Material, cos_o: f32) -> Spectrum {
     if cos_o <= COS_MIN {
         return spectrum_zero();
     }
     match material.model {
-        MODEL_LAMBERT | MODEL_PHONG | MODEL_BLINN_PHONG | MODEL_COOK_TORRANCE => {
-            spectrum_from_rgb(material.specular_color * material.k_r)
-        }
         MODEL_MIRROR => spectrum_from_rgb(material.color),
-        // MODEL_DIELECTRIC, MODEL_EMISSIVE
-        _ => spectrum_zero(),
+        MODEL_CONDUCTOR | MODEL_PLASTIC => {
+            spectrum_from_rgb(material.specular_color * fresnel_material(material, cos_o))
+        }
+        MODEL_DIELECTRIC
+        | MODEL_EMISSIVE
+        | MODEL_ROUGH_DIELECTRIC
+        | MODEL_THIN_DIELECTRIC
+        | MODEL_NULL
+        | MODEL_BLEND => spectrum_zero(),
+        _ => spectrum_from_rgb(material.specular_color * material.k_r),
     }
 }
 
-/// Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) for Cook-Torrance.
+/// Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) where there is an interface.
 #[inline]
 pub fn albedo_material(material: &Material) -> Spectrum {
     let diffuse = material.color * material.k_d;
     let specular = material.specular_color * material.k_s;
     let rgb = match material.model {
-        MODEL_LAMBERT => diffuse,
-        MODEL_PHONG | MODEL_BLINN_PHONG => diffuse + specular,
-        MODEL_COOK_TORRANCE => diffuse + specular * fresnel_cook_torrance(material, 1.0),
-        MODEL_MIRROR => material.color,
-        MODEL_DIELECTRIC => material.specular_color,
-        MODEL_EMISSIVE => material.color,
-        _ => Vec3::ZERO,
+        MODEL_LAMBERT | MODEL_OREN_NAYAR => diffuse,
+        MODEL_PHONG | MODEL_BLINN_PHONG | MODEL_WARD | MODEL_ASHIKHMIN_SHIRLEY => diffuse + specular,
+        MODEL_COOK_TORRANCE => diffuse + specular * fresnel_material(material, 1.0),
+        MODEL_CONDUCTOR | MODEL_ROUGH_CONDUCTOR => material.specular_color * fresnel_material(material, 1.0),
+        MODEL_DIELECTRIC | MODEL_ROUGH_DIELECTRIC | MODEL_THIN_DIELECTRIC => material.specular_color,
+        MODEL_NULL | MODEL_BLEND => Vec3::ZERO,
+        _ => material.color,
     };
     spectrum_from_rgb(Vec3::new(clamp_(rgb.x, 0.0, 1.0), clamp_(rgb.y, 0.0, 1.0), clamp_(rgb.z, 0.0, 1.0)))
 }
 
-/// True if the model reflects and refracts into single directions only.
+/// True if the model has lobes of zero width only: no light needs to be sampled for it.
 #[inline]
 pub fn is_delta(material: &Material) -> bool {
-    material.model == MODEL_MIRROR || material.model == MODEL_DIELECTRIC
+    matches!(material.model, MODEL_MIRROR | MODEL_DIELECTRIC | MODEL_CONDUCTOR | MODEL_THIN_DIELECTRIC | MODEL_NULL)
 }

@@ -10,7 +10,7 @@ use glam::{Vec2, Vec3};
 pub const M_MIN: f32 = 1.0e-3;
 
 /// Beyond e^-60 a distribution counts as zero, so that no subnormal appears further on.
-const EXPONENT_MAX: f32 = 60.0;
+pub const EXPONENT_MAX: f32 = 60.0;
 
 /// tan^2 of the angle between w (any length) and z. `w.z` > 0.
 #[inline]

@@ -117,6 +117,24 @@ fn triangle_surface(scene: &SceneView, instance: &Instance, hit: &Hit) -> Surfac
     }
 }
 
+/// Where the texture coordinate u grows on `surface`, world space, any length; zero where it has no direction.
+pub fn surface_tangent(scene: &SceneView, surface: &Surface) -> Vec3 {
+    let instance = load_instance(scene, surface.instance);
+    if instance.kind == KIND_SPHERE {
+        let point = transform_point(instance.to_object, surface.position);
+        return transform_vector(instance.to_world, Vec3::new(point.z, 0.0, -point.x));
+    }
+    let face = load_face(scene, instance.first_face + surface.primitive);
+    let p0 = load_vertex(scene, face.i0);
+    let p1 = load_vertex(scene, face.i1);
+    let p2 = load_vertex(scene, face.i2);
+    let dv1 = p1.v - p0.v;
+    let dv2 = p2.v - p0.v;
+    let area = (p1.u - p0.u) * dv2 - (p2.u - p0.u) * dv1;
+    let along = (p1.position - p0.position) * dv2 - (p2.position - p0.position) * dv1;
+    transform_vector(instance.to_world, if area < 0.0 { -along } else { along })
+}
+
 /// The surface at `hit`, which `trace_closest` found for `ray` (not a miss). The position is recomputed from the
 /// barycentric weights or, on a sphere, pushed onto it, and does not inherit the error of t.
 pub fn surface_at(scene: &SceneView, ray: &Ray, hit: &Hit) -> Surface {

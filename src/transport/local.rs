@@ -2,16 +2,17 @@
 
 use super::{DITHER_LIGHT, DITHER_SURFACE, LOBE_THROUGH, Queues, add_contribution, push_path, push_shadow};
 use crate::layout::{
-    Light, MATERIAL_FILTERED, MODEL_DIELECTRIC, MODEL_MIRROR, Material, PathState, SceneView, ShadowRay, load_light,
+    Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_FILTERED, MATERIAL_ONE_SIDED, MATERIAL_TRANSMISSIVE,
+    Material, PathState, SceneView, ShadowRay, load_light,
 };
-use crate::shading::frame::{Frame, frame_from_normal, to_local};
+use crate::shading::frame::{Frame, frame_from_normal, frame_from_tangent, to_local};
 use crate::shading::light::sample_light;
-use crate::shading::material::{ambient_material, eval_material};
+use crate::shading::material::{ambient_material, eval_material, is_delta};
 use crate::shading::math::{dot3, normalize3};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine};
-use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_max};
+use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_max, spectrum_zero};
 use crate::trace::spawn::{spawn_ray, spawn_through};
-use crate::trace::surface::Surface;
+use crate::trace::surface::{Surface, surface_tangent};
 use glam::{Vec3, Vec4};
 
 /// Smallest cosine between shading normal and viewer; interpolated normals that face away are bent up to it.
@@ -31,6 +32,31 @@ pub fn facing_normal(surface: &Surface, wo: Vec3) -> Vec3 {
     normal
 }
 
+/// The frame in which `material` is shaded for a viewer at `wo`: z is the normal on the viewer's side, or for models that
+/// transmit the one that leaves the outside; x follows the texture coordinates where the model has a direction.
+pub fn shading_frame(scene: &SceneView, surface: &Surface, material: &Material, wo: Vec3) -> Frame {
+    let facing = facing_normal(surface, wo);
+    let inside = (material.flags & MATERIAL_TRANSMISSIVE) != 0 && dot3(surface.normal_geometric, wo) < 0.0;
+    let normal = if inside { -facing } else { facing };
+    if (material.flags & MATERIAL_ANISOTROPIC) != 0 {
+        return frame_from_tangent(normal, surface_tangent(scene, surface));
+    }
+    frame_from_normal(normal)
+}
+
+/// True if a viewer at `wo` sees the back of a surface that reflects on its front only.
+pub fn is_hidden_back(surface: &Surface, material: &Material, wo: Vec3) -> bool {
+    (material.flags & MATERIAL_ONE_SIDED) != 0 && dot3(surface.normal_geometric, wo) < 0.0
+}
+
+/// Radiance the surface emits towards `wo`.
+pub fn emitted(surface: &Surface, material: &Material, wo: Vec3) -> Vec3 {
+    if (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0 && dot3(surface.normal_geometric, wo) < 0.0 {
+        return Vec3::ZERO;
+    }
+    material.emission
+}
+
 /// How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
 pub fn own_weight(material: &Material) -> f32 {
     if (material.flags & MATERIAL_FILTERED) != 0 { 1.0 } else { 1.0 - material.k_t }
@@ -38,6 +64,7 @@ pub fn own_weight(material: &Material) -> f32 {
 
 /// What the surface adds for one light, before any shadow: throughput * eval * radiance.
 pub fn light_contribution(
+    scene: &SceneView,
     weight: Spectrum,
     material: &Material,
     frame: Frame,
@@ -45,7 +72,7 @@ pub fn light_contribution(
     wi: Vec3,
     radiance: Spectrum,
 ) -> Spectrum {
-    weight * eval_material(material, to_local(frame, wo), to_local(frame, wi)) * radiance
+    weight * eval_material(scene, material, to_local(frame, wo), to_local(frame, wi)) * radiance
 }
 
 /// Adds emission, ambient and every light's share of the surface, and lets the ray go on through a pane.
@@ -60,19 +87,23 @@ pub fn shade_local(
 ) {
     let wo = -path.ray.direction;
     let weight = path.throughput * own_weight(material);
-    let ambient = spectrum_from_rgb(scene.header.ambient) * ambient_material(material);
-    let own = weight * (ambient + spectrum_from_rgb(material.emission));
+    let hidden = is_hidden_back(surface, material, wo);
+    let mut reflected = spectrum_from_rgb(scene.header.ambient) * ambient_material(material);
+    if hidden {
+        reflected = spectrum_zero();
+    }
+    let own = weight * (reflected + spectrum_from_rgb(emitted(surface, material, wo)));
     // A mirror or a glass covers the background like anything else.
     let alpha = path.coverage * (1.0 - material.k_t);
     let dither = dither_hash(key, DITHER_SURFACE);
     add_contribution(queues, scene.header.film_scale, path.slot, Vec4::new(own.x, own.y, own.z, alpha), dither);
 
-    if material.model != MODEL_MIRROR && material.model != MODEL_DIELECTRIC {
-        let frame = frame_from_normal(facing_normal(surface, wo));
+    if !is_delta(material) && !hidden {
+        let frame = shading_frame(scene, surface, material, wo);
         for index in 0..scene.header.light_count {
             let light: Light = load_light(scene, index);
             let lit = sample_light(&light, surface.position);
-            let seen = light_contribution(weight, material, frame, wo, lit.wi, lit.radiance);
+            let seen = light_contribution(scene, weight, material, frame, wo, lit.wi, lit.radiance);
             if spectrum_max(seen) > 0.0 {
                 let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
                 let light_dither = dither_hash(key, DITHER_LIGHT + index);

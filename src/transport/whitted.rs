@@ -1,8 +1,11 @@
 //! Ray tracing as a recursive local model. Source: Whitted 1980, "An Improved Illumination Model for Shaded Display".
 
-use super::local::{facing_normal, own_weight};
+use super::local::{facing_normal, is_hidden_back, own_weight};
 use super::{LOBE_MIRROR, LOBE_REFRACT, Queues, push_path};
-use crate::layout::{MODEL_DIELECTRIC, Material, PathState, SceneView, T_INFINITE};
+use crate::layout::{
+    MODEL_DIELECTRIC, MODEL_ROUGH_DIELECTRIC, MODEL_THIN_DIELECTRIC, Material, PathState, SceneView, T_INFINITE,
+};
+use crate::shading::delta::thin_reflectance;
 use crate::shading::dielectric::refract_local;
 use crate::shading::frame::{frame_from_normal, to_local, to_world};
 use crate::shading::fresnel::fresnel_dielectric;
@@ -49,11 +52,21 @@ pub fn mirror_direction(surface: &Surface, wo: Vec3) -> Vec3 {
     geometric * (2.0 * cos_geometric) - wo
 }
 
-/// Follows the mirror branch of any material and both branches of a smooth dielectric, each with its Fresnel weight.
+/// True if whitted follows what the material transmits: glass, drawn smooth even if it is rough, and thin panes.
+pub fn is_refracting(material: &Material) -> bool {
+    material.model == MODEL_DIELECTRIC
+        || material.model == MODEL_ROUGH_DIELECTRIC
+        || material.model == MODEL_THIN_DIELECTRIC
+}
+
+/// Follows the mirror branch of any material and both branches of a dielectric, each with its Fresnel weight.
 /// Media do not nest: a ray that leaves a dielectric is outside. Radiance is not scaled by eta^2 (Whitted's model).
 pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, material: &Material, queues: &mut Queues) {
     let wo = -path.ray.direction;
-    if material.model != MODEL_DIELECTRIC {
+    if !is_refracting(material) {
+        if is_hidden_back(surface, material, wo) {
+            return;
+        }
         let normal = facing_normal(surface, wo);
         let weight = mirror_weight(material, dot3(normal, wo)) * own_weight(material);
         push_branch(scene, path, surface, mirror_direction(surface, wo), weight, LOBE_MIRROR, queues);
@@ -63,8 +76,17 @@ pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, mat
     let eta = if entering { material.eta.x } else { rcp(material.eta.x) };
     let frame = frame_from_normal(facing_normal(surface, wo));
     let wo_local = to_local(frame, wo);
-    let reflectance = fresnel_dielectric(wo_local.z, eta);
-    push_branch(scene, path, surface, mirror_direction(surface, wo), Vec4::splat(reflectance), LOBE_MIRROR, queues);
+    let thin = material.model == MODEL_THIN_DIELECTRIC;
+    let reflectance =
+        if thin { thin_reflectance(wo_local.z, material.eta.x) } else { fresnel_dielectric(wo_local.z, eta) };
+    let tint = material.color * reflectance;
+    let mirrored = Vec4::new(tint.x, tint.y, tint.z, reflectance);
+    push_branch(scene, path, surface, mirror_direction(surface, wo), mirrored, LOBE_MIRROR, queues);
+    let weight = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
+    if thin {
+        push_branch(scene, path, surface, path.ray.direction, weight, LOBE_REFRACT, queues);
+        return;
+    }
     let refraction = refract_local(wo_local, eta);
     if refraction.total {
         return;
@@ -72,6 +94,5 @@ pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, mat
     let mut inside = *path;
     inside.eta = if entering { material.eta.x } else { 1.0 };
     inside.absorption = if entering { material.absorption } else { Vec3::ZERO };
-    let weight = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
     push_branch(scene, &inside, surface, to_world(frame, refraction.wt), weight, LOBE_REFRACT, queues);
 }

@@ -127,6 +127,38 @@ void store_constants() {
     constants[52] = MAGNIFY_BILINEAR;
     constants[53] = TEXTURE_WORDS;
     constants[54] = STACK_SIZE;
+    constants[55] = MODEL_OREN_NAYAR;
+    constants[56] = MODEL_WARD;
+    constants[57] = MODEL_ASHIKHMIN_SHIRLEY;
+    constants[58] = MODEL_KELEMEN;
+    constants[59] = MODEL_CONDUCTOR;
+    constants[60] = MODEL_ROUGH_CONDUCTOR;
+    constants[61] = MODEL_ROUGH_DIELECTRIC;
+    constants[62] = MODEL_THIN_DIELECTRIC;
+    constants[63] = MODEL_PLASTIC;
+    constants[64] = MODEL_ROUGH_PLASTIC;
+    constants[65] = MODEL_PRINCIPLED;
+    constants[66] = MODEL_MEASURED;
+    constants[67] = MODEL_NULL;
+    constants[68] = MODEL_BLEND;
+    constants[69] = MATERIAL_SCHLICK;
+    constants[70] = MATERIAL_SMITH;
+    constants[71] = MATERIAL_ANISOTROPIC;
+    constants[72] = MATERIAL_NONLINEAR;
+    constants[73] = MATERIAL_COMPENSATE;
+    constants[74] = MATERIAL_ONE_SIDED;
+    constants[75] = MATERIAL_EMIT_ONE_SIDED;
+    constants[76] = MATERIAL_WARD_1992;
+    constants[77] = MATERIAL_WARD_DUER;
+    constants[78] = DISTRIBUTION_SHIFT;
+    constants[79] = DISTRIBUTION_BECKMANN;
+    constants[80] = DISTRIBUTION_GAUSSIAN;
+    constants[81] = DISTRIBUTION_TROWBRIDGE_REITZ;
+    constants[82] = DISTRIBUTION_PHONG;
+    constants[83] = MATERIAL_TRANSMISSIVE;
+    constants[84] = ALBEDO_HEADER;
+    constants[85] = ALBEDO_KNOTS;
+    constants[86] = MAX_LEAVES;
 }
 
 void main() {

@@ -4,6 +4,11 @@
 // Twins of the reflection models; numbers as in `src/verify/twins/models.rs`: 3 * MODEL_* + {eval and pdf, sample, rest}.
 #include "kernels/parity/harness.glsl"
 #include "layout/mod.glsl"
+#include "shading/sampling.glsl"
+
+// Tables of anything at all: the same hash fills the Rust twin's.
+float load_table(uint index) { return unit_float(hash_u32(index)); }
+
 #include "shading/material.glsl"
 
 Material material(uint model) {
@@ -28,6 +33,11 @@ Material material(uint model) {
     m.color_texture = 0u;
     m.absorption = vec3(0.0);
     m.emission = vec3(0.0);
+    m.table = 64u;
+    m.m0_v = argument(13u);
+    m.m1_v = 0.25;
+    m.exponent_v = argument(14u);
+    m.extra = argument(15u);
     return m;
 }
 
@@ -42,8 +52,10 @@ void main() {
         result(4u, pdf_material(m, wo, wi));
         break;
     case 1u:
-        DirectionSample s = sample_material(m, wo, abs(argument2(3u)), argument(5u));
+        BsdfSample s = sample_material(m, wo, abs(argument2(3u)), abs(argument(5u)));
         result4(0u, vec4(s.wi, s.pdf));
+        result3(4u, s.weight.xyz);
+        result_u(7u, floatBitsToUint(s.eta) ^ s.flags);
         break;
     default:
         result(0u, ambient_material(m).x);

@@ -3,27 +3,61 @@
 
 use super::{Family, In, Out, Twin};
 use crate::layout::{
-    MODEL_BLINN_PHONG, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_LAMBERT, MODEL_MIRROR, MODEL_PHONG,
-    Material,
+    MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC,
+    MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR, MODEL_NULL, MODEL_OREN_NAYAR,
+    MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC, MODEL_ROUGH_PLASTIC,
+    MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneHeader, SceneView,
 };
 use crate::shading::material::{
     albedo_material, ambient_material, eval_material, is_delta, mirror_weight, pdf_material, sample_material,
 };
-use crate::verify::inputs::Domain::{self, Below, Range, Upper};
+use crate::shading::sampling::{hash_u32, unit_float};
+use crate::verify::inputs::Domain::{self, Below, Direction, Range};
 use glam::Vec3;
+use std::sync::LazyLock;
 
-/// wo, wi (or u and u_lobe), exponent, k_s, eta, k, slopes, flags.
-const MATERIAL: [Domain; 9] = [
-    Upper,
-    Upper,
+/// wo, wi (or u and u_lobe), exponent, k_s, eta, k, slopes, flags, slope and exponent across, the extra parameter.
+const MATERIAL: [Domain; 12] = [
+    Direction,
+    Direction,
     Range(0.0, 2000.0),
     Range(0.0, 1.0),
     Range(0.1, 4.0),
     Range(0.0, 8.0),
     Range(1.0e-3, 2.0),
     Range(1.0e-3, 2.0),
-    Below(32),
+    Below(1 << 20),
+    Range(1.0e-3, 2.0),
+    Range(0.0, 2000.0),
+    Range(0.0, 1.0),
 ];
+
+/// Table entries that models may ask for; a MERL table is the largest.
+const TABLE: usize = TABLE_AT as usize + 8 + 90 + 3 * 90 * 90 * 180;
+/// Where the models' tables begin.
+const TABLE_AT: u32 = 64;
+
+/// What `load_table` gives in the kernel: a hash of the index.
+static TABLES: LazyLock<Vec<f32>> = LazyLock::new(|| (0..TABLE as u32).map(|i| unit_float(hash_u32(i))).collect());
+static HEADER: LazyLock<SceneHeader> = LazyLock::new(SceneHeader::default);
+
+/// A scene of tables alone.
+fn tables() -> SceneView<'static> {
+    SceneView {
+        header: &HEADER,
+        nodes: &[],
+        triangles: &[],
+        instances: &[],
+        top_instances: &[],
+        faces: &[],
+        vertices: &[],
+        materials: &[],
+        lights: &[],
+        textures: &[],
+        texels: &[],
+        tables: &TABLES,
+    }
+}
 
 fn material(i: &In, model: u32) -> Material {
     Material {
@@ -42,18 +76,23 @@ fn material(i: &In, model: u32) -> Material {
         w0: 0.625,
         w1: 0.375,
         flags: i.u(12),
+        table: TABLE_AT,
+        m0_v: i.f(13),
+        m1_v: 0.25,
+        exponent_v: i.f(14),
+        extra: i.f(15),
         ..Material::default()
     }
 }
 
 fn eval(i: &In, o: &mut Out, model: u32) {
-    let m = material(i, model);
-    o.v4(eval_material(&m, i.v3(0), i.v3(3))).f(pdf_material(&m, i.v3(0), i.v3(3)));
+    let (scene, m) = (tables(), material(i, model));
+    o.v4(eval_material(&scene, &m, i.v3(0), i.v3(3))).f(pdf_material(&scene, &m, i.v3(0), i.v3(3)));
 }
 
 fn sample(i: &In, o: &mut Out, model: u32) {
-    let s = sample_material(&material(i, model), i.v3(0), i.v2(3).abs(), i.f(5));
-    o.v3(s.wi).f(s.pdf);
+    let s = sample_material(&tables(), &material(i, model), i.v3(0), i.v2(3).abs(), i.f(5).abs());
+    o.v3(s.wi).f(s.pdf).v3(s.weight.truncate()).u(s.eta.to_bits() ^ s.flags);
 }
 
 fn rest(i: &In, o: &mut Out, model: u32) {
@@ -71,14 +110,38 @@ macro_rules! model {
     };
 }
 
-const TWINS: [[Twin; 3]; 7] = [
-    model!("eval_lambert pdf_lambert", "sample_lambert", "lambert's rest", MODEL_LAMBERT),
-    model!("eval_phong pdf_phong", "sample_phong", "phong's rest", MODEL_PHONG),
-    model!("eval_blinn_phong pdf_blinn_phong", "sample_blinn_phong", "blinn-phong's rest", MODEL_BLINN_PHONG),
-    model!("eval_cook_torrance pdf_cook_torrance", "sample_cook_torrance", "cook-torrance's rest", MODEL_COOK_TORRANCE),
-    model!("a mirror's eval", "a mirror's sample", "a mirror's rest", MODEL_MIRROR),
-    model!("a dielectric's eval", "a dielectric's sample", "a dielectric's rest", MODEL_DIELECTRIC),
-    model!("an emitter's eval", "an emitter's sample", "an emitter's rest", MODEL_EMISSIVE),
+const TWINS: [[Twin; 3]; 21] = [
+    model!("eval_lambert pdf_lambert", "sample_lambert", "lambert: rest", MODEL_LAMBERT),
+    model!("eval_phong pdf_phong", "sample_phong", "phong: rest", MODEL_PHONG),
+    model!("eval_blinn_phong pdf_blinn_phong", "sample_blinn_phong", "blinn_phong: rest", MODEL_BLINN_PHONG),
+    model!("eval_cook_torrance pdf_cook_torrance", "sample_cook_torrance", "cook_torrance: rest", MODEL_COOK_TORRANCE),
+    model!("a mirror: eval", "a mirror: sample", "a mirror: rest", MODEL_MIRROR),
+    model!("a dielectric: eval", "a dielectric: sample", "a dielectric: rest", MODEL_DIELECTRIC),
+    model!("an emitter: eval", "an emitter: sample", "an emitter: rest", MODEL_EMISSIVE),
+    model!("eval_oren_nayar pdf_oren_nayar", "sample_oren_nayar", "oren_nayar: rest", MODEL_OREN_NAYAR),
+    model!("eval_ward pdf_ward", "sample_ward", "ward: rest", MODEL_WARD),
+    model!("eval_ashikhmin pdf_ashikhmin", "sample_ashikhmin", "ashikhmin: rest", MODEL_ASHIKHMIN_SHIRLEY),
+    model!("eval_kelemen pdf_kelemen", "sample_kelemen", "kelemen: rest", MODEL_KELEMEN),
+    model!("a smooth metal: eval", "a smooth metal: sample", "a smooth metal: rest", MODEL_CONDUCTOR),
+    model!(
+        "eval_rough_conductor pdf_rough_conductor",
+        "sample_rough_conductor",
+        "rough_conductor: rest",
+        MODEL_ROUGH_CONDUCTOR
+    ),
+    model!(
+        "eval_rough_dielectric pdf_rough_dielectric",
+        "sample_rough_dielectric",
+        "rough_dielectric: rest",
+        MODEL_ROUGH_DIELECTRIC
+    ),
+    model!("a thin pane: eval", "a thin pane: sample", "a thin pane: rest", MODEL_THIN_DIELECTRIC),
+    model!("eval_plastic pdf_plastic", "sample_plastic", "plastic: rest", MODEL_PLASTIC),
+    model!("eval_rough_plastic pdf_rough_plastic", "sample_rough_plastic", "rough_plastic: rest", MODEL_ROUGH_PLASTIC),
+    model!("eval_principled pdf_principled", "sample_principled", "principled: rest", MODEL_PRINCIPLED),
+    model!("eval_measured pdf_measured", "sample_measured", "measured: rest", MODEL_MEASURED),
+    model!("nothing: eval", "nothing: sample", "nothing: rest", MODEL_NULL),
+    model!("a blend: eval", "a blend: sample", "a blend: rest", MODEL_BLEND),
 ];
 
 pub const FAMILY: Family = Family { kernel: "parity/models", twins: TWINS.as_flattened() };

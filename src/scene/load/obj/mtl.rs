@@ -150,7 +150,8 @@ impl Entry {
         let transparent = self.opacity < 1.0 && !refracts;
         let specular = if k_s > 0.0 { self.specular / k_s } else { Rgb::ONE };
         let material = Material {
-            color: self.base_color(texture.is_some()),
+            // Of a dielectric it would tint what is reflected.
+            color: if refracts { Rgb::ONE } else { self.base_color(texture.is_some()) },
             k_a: self.ambient.map_or(1.0, |ambient| ambient.max_element().min(1.0)),
             k_s: if shiny { k_s } else { 0.0 },
             k_r: if shiny && matches!(self.illum, Some(3 | 5 | 8)) { k_s } else { 0.0 },

@@ -1,0 +1,94 @@
+//! Lights and textures as the device reads them.
+
+use crate::layout::{
+    ATTENUATION_INVERSE_SQUARE, ATTENUATION_NONE, ATTENUATION_POLYNOMIAL, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT, Light,
+    MAGNIFY_BILINEAR, MAGNIFY_NEAREST, TEXEL_FLOAT, TEXEL_LINEAR8, TEXEL_SRGB8, Texture, WRAP_CLAMP, WRAP_MIRROR,
+    WRAP_REPEAT,
+};
+use crate::scene::{self, Attenuation, IntensityUnit, LightKind, TextureData, Wrap};
+use glam::{DVec3, Vec3};
+
+/// `v` made unit in double precision; +z if it has no direction.
+pub fn unit(v: DVec3) -> Vec3 {
+    let length = libm::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    let n = v / length;
+    if n.is_finite() { n.as_vec3() } else { Vec3::Z }
+}
+
+/// One light. The lecture's intensities are radiometric ones divided by pi (DESIGN, section 5).
+pub fn bake_light(light: &scene::Light) -> Light {
+    let factor = match light.unit {
+        IntensityUnit::Lecture => std::f64::consts::PI,
+        IntensityUnit::Radiometric => 1.0,
+    };
+    let mut baked = Light {
+        intensity: (light.intensity.as_dvec3() * factor).as_vec3(),
+        casts_shadow: u32::from(light.casts_shadow),
+        ..Light::default()
+    };
+    match light.kind {
+        LightKind::Point { position } => {
+            baked.kind = LIGHT_POINT;
+            baked.position = position;
+        }
+        LightKind::Directional { direction } => {
+            baked.kind = LIGHT_DIRECTIONAL;
+            baked.direction = unit(direction.as_dvec3());
+        }
+        LightKind::Spot { position, direction, inner, outer, exponent } => {
+            baked.kind = LIGHT_SPOT;
+            baked.position = position;
+            baked.direction = unit(direction.as_dvec3());
+            baked.cos_inner = libm::cos(f64::from(inner)) as f32;
+            baked.cos_outer = libm::cos(f64::from(outer)) as f32;
+            baked.exponent = exponent;
+        }
+    }
+    match light.attenuation {
+        Attenuation::InverseSquare => baked.attenuation = ATTENUATION_INVERSE_SQUARE,
+        Attenuation::Polynomial { c1, c2, c3 } => {
+            baked.attenuation = ATTENUATION_POLYNOMIAL;
+            baked.c = Vec3::new(c1, c2, c3);
+        }
+        Attenuation::None => baked.attenuation = ATTENUATION_NONE,
+    }
+    baked
+}
+
+/// One texture; its words are appended to `texels`.
+pub fn bake_texture(texture: &scene::Texture, texels: &mut Vec<u32>) -> Texture {
+    let wrap = |wrap| match wrap {
+        Wrap::Repeat => WRAP_REPEAT,
+        Wrap::Clamp => WRAP_CLAMP,
+        Wrap::Mirror => WRAP_MIRROR,
+    };
+    let first_word = texels.len() as u32;
+    let format = match &texture.data {
+        TextureData::Srgb8(data) => {
+            texels.extend(data.iter().map(|&rgba| u32::from_le_bytes(rgba)));
+            TEXEL_SRGB8
+        }
+        TextureData::Linear8(data) => {
+            texels.extend(data.iter().map(|&rgba| u32::from_le_bytes(rgba)));
+            TEXEL_LINEAR8
+        }
+        TextureData::Float(data) => {
+            texels.extend(data.iter().flatten().map(|x| x.to_bits()));
+            TEXEL_FLOAT
+        }
+    };
+    Texture {
+        width: texture.width,
+        height: texture.height,
+        first_word,
+        format,
+        wrap_u: wrap(texture.wrap_u),
+        wrap_v: wrap(texture.wrap_v),
+        magnify: if texture.bilinear { MAGNIFY_BILINEAR } else { MAGNIFY_NEAREST },
+        scale_u: texture.scale[0],
+        scale_v: texture.scale[1],
+        offset_u: texture.offset[0],
+        offset_v: texture.offset[1],
+        ..Texture::default()
+    }
+}
