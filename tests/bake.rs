@@ -255,12 +255,14 @@ fn the_heap_has_every_array_where_the_header_says() {
             h.first_texture,
             h.first_texel,
             h.first_table,
+            h.first_emitter,
+            h.first_environment_map,
         ]
     );
     for pair in pieces.windows(2) {
         assert_eq!(pair[1].first_word, pair[0].first_word + pair[0].bytes.len().div_ceil(16) as u32);
     }
-    let last = pieces[8];
+    let last = pieces[10];
     assert_eq!(data.heap_words(), u64::from(last.first_word) + last.bytes.len().div_ceil(16) as u64);
     assert_eq!(pieces[7].bytes, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]);
     // The sRGB table comes first, then the filter's.

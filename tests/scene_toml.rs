@@ -98,10 +98,12 @@ fn a_scene_without_settings_has_the_documented_defaults() {
         sampler: Sampler::Sobol,
         max_depth: 8,
         min_weight: 0.003,
+        rr_depth: 5,
+        clamp: None,
         shadows: true,
     };
     assert_eq!(scene.settings, settings);
-    assert_eq!((scene.ambient, scene.background), (Rgb::ZERO, Background { bottom: Rgb::ZERO, top: Rgb::ZERO }));
+    assert_eq!((scene.ambient, scene.background), (Rgb::ZERO, Background::BLACK));
     let camera = scene.camera;
     assert_eq!((camera.target, camera.up), (Vec3::ZERO, Vec3::Y));
     assert_eq!(camera.projection, Projection::Perspective { fov_y: 45.0_f32.to_radians() });
@@ -113,7 +115,7 @@ fn a_scene_without_settings_has_the_documented_defaults() {
 fn render_film_and_background_keys_arrive() {
     let text = format!(
         "[render]\nintegrator = \"local\"\nsamples = 9\nseed = 4294967295\nsampler = \"stratified\"\nmax_depth = 3\n\
-         min_weight = 0.5\nshadows = false\nambient = [0.1, 0.2, 0.3]\n\
+         min_weight = 0.5\nrr_depth = 2\nclamp = 10\nshadows = false\nambient = [0.1, 0.2, 0.3]\n\
          [film]\nsize = [3, 2]\nfilter = {{ type = \"gaussian\", radius = 2.5 }}\nunit = 0.25\ntonemap = \"reinhard\"\nexposure = -1\n\
          [background]\nbottom = 0.5\ntop = \"white\"\n{LEAST}"
     );
@@ -125,6 +127,8 @@ fn render_film_and_background_keys_arrive() {
         sampler: Sampler::Stratified,
         max_depth: 3,
         min_weight: 0.5,
+        rr_depth: 2,
+        clamp: Some(10.0),
         shadows: false,
     };
     assert_eq!(scene.settings, settings);
@@ -138,7 +142,7 @@ fn render_film_and_background_keys_arrive() {
     };
     assert_eq!(scene.film, film);
     assert_eq!(scene.ambient, Rgb::new(0.1, 0.2, 0.3));
-    assert_eq!(scene.background, Background { bottom: Rgb::splat(0.5), top: Rgb::ONE });
+    assert_eq!(scene.background, Background::Gradient { bottom: Rgb::splat(0.5), top: Rgb::ONE });
 }
 
 #[test]
@@ -154,9 +158,9 @@ fn a_horizontal_field_of_view_becomes_a_vertical_one_by_the_frame() {
 fn each_model_reads_its_own_keys() {
     assert_eq!(material("color = \"red\"\nk_d = 0.5"), Material { color: Rgb::X, k_d: 0.5, ..Material::grey("m") });
     let phong = material("model = \"phong\"\nexponent = 8\nnormalisation = \"lafortune\"");
-    assert_eq!(phong.model, Model::Phong { exponent: 8.0, lafortune: true });
+    assert_eq!(phong.model, Model::Phong { exponent: 8.0, lafortune: Some(true) });
     assert_eq!((phong.k_d, phong.k_s), (0.7, 0.3));
-    assert_eq!(material("model = \"phong\"").model, Model::Phong { exponent: 32.0, lafortune: false });
+    assert_eq!(material("model = \"phong\"").model, Model::Phong { exponent: 32.0, lafortune: None });
     assert_eq!(material("model = \"blinn-phong\"\nexponent = 0").model, Model::BlinnPhong { exponent: 0.0 });
     assert_eq!(material("model = \"mirror\"").color, Rgb::splat(0.9));
     let water = material("model = \"dielectric\"\neta = \"water\"\nabsorption = [1, 2, 3]");
@@ -349,7 +353,7 @@ fn overrides_change_values_by_name_and_by_number() {
     ];
     let scene = read(&text, &overrides);
     assert_eq!(scene.settings.samples, 64);
-    assert_eq!(scene.materials[0].model, Model::Phong { exponent: 20.0, lafortune: false });
+    assert_eq!(scene.materials[0].model, Model::Phong { exponent: 20.0, lafortune: None });
     assert_eq!(scene.materials[0].color, Rgb::ONE);
     assert!(close(placed(&scene.objects[0], [0.0; 3]), [1.0, 2.0, 3.0]));
     assert_eq!(scene.lights[0].intensity, Rgb::splat(3.0));

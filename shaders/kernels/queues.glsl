@@ -9,15 +9,16 @@ uint level_first(uint level) {
     return level == 0u ? 0u : control.level0_capacity + (level - 1u) * control.level_capacity;
 }
 
-// Appends a ray to the level of its depth. A full queue is counted, and ends the render with an error.
+// Appends a ray to the level of its depth, or to the only one. A full queue is counted, and ends the render with an error.
 void push_path(PathState path) {
-    uint capacity = path.depth == 0u ? control.level0_capacity : control.level_capacity;
-    uint at = atomicAdd(control.level_count[path.depth], 1u);
+    uint level = min(path.depth, header.level_count - 1u);
+    uint capacity = level == 0u ? control.level0_capacity : control.level_capacity;
+    uint at = atomicAdd(control.level_count[level], 1u);
     if (at >= capacity) {
         atomicAdd(control.overflows, 1u);
         return;
     }
-    levels[level_first(path.depth) + at] = path;
+    levels[level_first(level) + at] = path;
 }
 
 // Appends a shadow ray.
@@ -28,6 +29,11 @@ void push_shadow(ShadowRay shadow) {
         return;
     }
     shadows[at] = shadow;
+}
+
+// Notes that a contribution was limited.
+void count_limited() {
+    atomicAdd(control.limited_count, 1u);
 }
 
 // Adds a 64-bit integer to lane `lane` of a sum in a buffer: two atomic words with carry, so any order gives the same.

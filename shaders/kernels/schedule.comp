@@ -16,7 +16,7 @@ void main() {
     control.shadow_count = 0u;
     control.chunk_count = 0u;
     uint room = control.chunk_limit; // rays of the last level have no branches
-    for (uint level = header.max_depth + 1u; level-- > 0u;) {
+    for (uint level = header.level_count; level-- > 0u;) {
         uint waiting = control.level_count[level];
         uint count = min(min(waiting, control.chunk_limit), room);
         if (count > control.chunk_count) {

@@ -12,7 +12,7 @@ struct DispatchArguments {
     uint z;
 };
 
-// One per device. 372 bytes.
+// One per device. 376 bytes.
 // A round is: schedule; extend (this round's chunk) and shadow (last round's queue); shade.
 struct Control {
     // Indirect arguments written by schedule.
@@ -39,6 +39,8 @@ struct Control {
     // Contributions that were not a number; samples whose sum was clamped.
     uint nan_count;
     uint clamped_count;
+    // Contributions that the scene's `clamp` has limited.
+    uint limited_count;
     // Rays traced, low and high words.
     uvec2 closest_rays;
     uvec2 shadow_rays;

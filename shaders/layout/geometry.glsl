@@ -110,8 +110,9 @@ struct Instance {
     uint flags;
     // Object id for the AOV: index of the object in the scene file, from 0.
     uint object;
+    // Density of light samples on it, as `Emitter.density`, divided by the luminance of the material's emission.
+    float light_density;
     uint pad0;
-    uint pad1;
 };
 const uint INSTANCE_WORDS = 8u;
 
@@ -139,8 +140,8 @@ Instance load_instance(uint index) {
     uvec4 w7 = fetch_data(at + 7u);
     r.flags = w7.x;
     r.object = w7.y;
-    r.pad0 = w7.z;
-    r.pad1 = w7.w;
+    r.light_density = uintBitsToFloat(w7.z);
+    r.pad0 = w7.w;
     return r;
 }
 #endif

@@ -6,6 +6,8 @@
 
 const uint INTEGRATOR_LOCAL = 0u;
 const uint INTEGRATOR_WHITTED = 1u;
+// Path tracing; `direct` is its case of one scattering event.
+const uint INTEGRATOR_PATH = 2u;
 
 const uint SAMPLER_SOBOL = 0u;
 const uint SAMPLER_STRATIFIED = 1u;
@@ -16,7 +18,7 @@ const uint FILTER_TENT = 1u;
 // Gaussian, Mitchell and other tabulated filters: piecewise constant, sampled through their inverse CDF.
 const uint FILTER_TABLE = 2u;
 
-// Scene-wide values. 256 bytes. `first_*` are offsets into the data heap in 16-byte words.
+// Scene-wide values. 288 bytes. `first_*` are offsets into the data heap in 16-byte words.
 struct SceneHeader {
     Camera camera;
     // I_a of the ambient term (radiance).
@@ -66,9 +68,23 @@ struct SceneHeader {
     uint aovs;
     // Relative widening of the top level's box test (`approx_intersect_node`): covers the rounding of rays in object space.
     float top_margin;
+    uint emitter_count;
+    uint first_emitter;
+    // 1 if an image surrounds the scene, at `first_environment_map`; else the gradient does.
+    uint environment_maps;
+    uint first_environment_map;
+    // First float in the table array of the emitters' alias table: threshold and other emitter's index of each.
+    uint emitter_table;
+    // Probability of choosing the environment among the emitters; 0 if it is none.
+    float environment_density;
+    // Rays that have scattered this often or more take part in Russian roulette (path).
+    uint rr_depth;
+    // Largest |lane| of light that has been scattered, per contribution; 0 for no limit (path).
+    float clamp;
+    // Levels of pending rays: one per depth where rays branch, else one.
+    uint level_count;
     uint pad0;
     uint pad1;
-    uint pad2;
 };
 
 // Intervals in the tabulated filter's inverse CDF.

@@ -11,6 +11,7 @@ const uint INVALID = 0xffffffffu;
 
 #include "layout/camera.glsl"
 #include "layout/control.glsl"
+#include "layout/emitter.glsl"
 #include "layout/film.glsl"
 #include "layout/geometry.glsl"
 #include "layout/header.glsl"

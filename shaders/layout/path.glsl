@@ -73,7 +73,9 @@ struct PathState {
     float coverage;
     // Relative index of the medium the ray travels in (1 outside everything).
     float eta;
-    uint pad0;
+    // Density per solid angle with which the ray's direction was drawn where it left a surface; 0 if no light sample there
+    // could have had it: camera rays, directions of zero width, what has passed a pane (path).
+    float pdf;
     // Beer coefficient of that medium, per scene unit.
     vec3 absorption;
     uint pad1;
@@ -106,7 +108,7 @@ PathState load_path_state(uint index) {
     r.depth = w5.x;
     r.coverage = uintBitsToFloat(w5.y);
     r.eta = uintBitsToFloat(w5.z);
-    r.pad0 = w5.w;
+    r.pdf = uintBitsToFloat(w5.w);
     uvec4 w6 = fetch_path(at + 6u);
     r.absorption = uintBitsToFloat(w6.xyz);
     r.pad1 = w6.w;

@@ -20,9 +20,17 @@ struct LightSample {
     vec3 wi;
     // World units; `T_INFINITE` for a directional light.
     float distance;
-    // Intensity (directional: irradiance) times attenuation and cone: the outgoing radiance is `eval` times this.
+    // Outgoing radiance is `eval` times this: of a light of no size intensity (directional: irradiance) times attenuation
+    // and cone; of another, and where the light was chosen at random, divided by the density of that choice.
     Spectrum radiance;
+    // With which `wi` was drawn; 0 for a light of no size, which no other ray meets.
+    float pdf_solid_angle;
 };
+
+// No light, from a valid direction.
+LightSample no_light() {
+    return LightSample(vec3(0.0, 0.0, 1.0), 0.0, spectrum_zero(), 0.0);
+}
 
 // Fall-off with distance, 0.. : 1/d^2, or the lecture's min(1, 1/(c1 + c2 d + c3 d^2)), or 1.
 // `distance2`: its square, within `DISTANCE2_MIN` and `DISTANCE2_MAX`.
@@ -53,12 +61,12 @@ float spot_factor(Light light, float cos_axis) {
 // The light as seen from `position` (world). Zero radiance, but a valid direction, if the two coincide.
 LightSample sample_light(Light light, vec3 position) {
     if (light.kind == LIGHT_DIRECTIONAL) {
-        return LightSample(-light.direction, T_INFINITE, spectrum_from_rgb(light.intensity));
+        return LightSample(-light.direction, T_INFINITE, spectrum_from_rgb(light.intensity), 0.0);
     }
     vec3 to_light = light.position - position;
     float distance2 = dot3(to_light, to_light);
     if (distance2 < DISTANCE2_MIN || distance2 > DISTANCE2_MAX) {
-        return LightSample(vec3(0.0, 0.0, 1.0), 0.0, spectrum_zero());
+        return no_light();
     }
     float inverse = rsqrt(distance2);
     vec3 wi = to_light * inverse;
@@ -67,7 +75,7 @@ LightSample sample_light(Light light, vec3 position) {
     if (light.kind == LIGHT_SPOT) {
         factor *= spot_factor(light, -dot3(wi, light.direction));
     }
-    return LightSample(wi, distance, spectrum_from_rgb(light.intensity * factor));
+    return LightSample(wi, distance, spectrum_from_rgb(light.intensity * factor), 0.0);
 }
 
 #endif

@@ -147,6 +147,12 @@ Spectrum mirror_weight(Material material, float cos_o) {
     }
 }
 
+// Radiance the surface sends out by itself, the same in every direction: its emission, and the colour of an emissive one.
+vec3 emission_material(Material material) {
+    vec3 shown = material.model == MODEL_EMISSIVE ? material.color : vec3(0.0);
+    return material.emission + shown;
+}
+
 // Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) where there is an interface.
 Spectrum albedo_material(Material material) {
     vec3 diffuse = material.color * material.k_d;

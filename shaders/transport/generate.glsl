@@ -48,7 +48,7 @@ PathState generate(Batch batch, uint slot) {
     path.depth = 0u;
     path.coverage = pixel_filter.weight;
     path.eta = 1.0;
-    path.pad0 = 0u;
+    path.pdf = 0.0;
     path.absorption = vec3(0.0);
     path.pad1 = 0u;
     return path;

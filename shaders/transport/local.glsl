@@ -51,7 +51,7 @@ vec3 emitted(Surface surface, Material material, vec3 wo) {
     if ((material.flags & MATERIAL_EMIT_ONE_SIDED) != 0u && dot3(surface.normal_geometric, wo) < 0.0) {
         return vec3(0.0);
     }
-    return material.emission;
+    return emission_material(material);
 }
 
 // How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).

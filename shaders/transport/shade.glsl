@@ -3,37 +3,19 @@
 #define TRANSPORT_SHADE_GLSL
 
 #include "shading/dielectric.glsl"
+#include "shading/environment.glsl"
 #include "shading/material.glsl"
-#include "shading/math.glsl"
 #include "shading/sampling.glsl"
 #include "shading/spectrum.glsl"
-#include "shading/texture.glsl"
 #include "trace/surface.glsl"
 #include "transport/generate.glsl"
 #include "transport/local.glsl"
+#include "transport/path.glsl"
+#include "transport/textured.glsl"
 #include "transport/whitted.glsl"
 
 // Throughput below this is nothing, on every device alike (strict rule 4).
 const float THROUGHPUT_MIN = 1.0e-30;
-
-// Radiance where a ray leaves the scene: a gradient over the direction's height, -y to +y.
-vec3 background(vec3 direction) {
-    float height = direction.y * 0.5 + 0.5;
-    vec3 bottom = header.background_bottom;
-    vec3 top = header.background_top;
-    return vec3(mix_(bottom.x, top.x, height), mix_(bottom.y, top.y, height), mix_(bottom.z, top.z, height));
-}
-
-// The surface's material with its texture and vertex colour applied.
-Material material_at(Surface surface) {
-    Material material = load_material(surface.material);
-    material.color *= surface.color;
-    if (material.color_texture != INVALID) {
-        vec4 texel = sample_texture(load_texture(material.color_texture), surface.uv);
-        material.color *= vec3(texel.x, texel.y, texel.z);
-    }
-    return material;
-}
 
 // Shades one path: adds what it sees, appends shadow rays and the rays that go on.
 void shade(PathState incoming, Hit hit) {
@@ -42,8 +24,11 @@ void shade(PathState incoming, Hit hit) {
     SampleKey key = sample_key(path.pixel, path.sample_index, path.path_id);
     if (hit.instance == INVALID) {
         if (!(straight && header.hide_background != 0u)) {
-            Spectrum radiance = spectrum_from_rgb(background(path.ray.direction));
-            Spectrum seen = path.throughput * radiance;
+            if (header.integrator == INTEGRATOR_PATH) {
+                shade_escape(path, key);
+                return;
+            }
+            Spectrum seen = path.throughput * background(path.ray.direction);
             uint dither = dither_hash(key, DITHER_BACKGROUND);
             add_contribution(header.film_scale, path.slot, vec4(seen.x, seen.y, seen.z, 0.0), dither);
         }
@@ -60,6 +45,10 @@ void shade(PathState incoming, Hit hit) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
         add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
+    }
+    if (header.integrator == INTEGRATOR_PATH) {
+        shade_path(path, key, hit, surface, material);
+        return;
     }
     shade_local(path, key, surface, material);
     if (header.integrator == INTEGRATOR_WHITTED && path.depth < header.max_depth) {

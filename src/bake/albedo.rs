@@ -38,6 +38,8 @@ fn table_scene<'a>(header: &'a SceneHeader, tables: &'a [f32]) -> SceneView<'a> 
         vertices: &[],
         materials: &[],
         lights: &[],
+        emitters: &[],
+        environments: &[],
         textures: &[],
         texels: &[],
         tables,

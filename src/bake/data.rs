@@ -1,7 +1,7 @@
 //! The baked scene: flat arrays, ready to upload or to trace.
 
 use super::BakeError;
-use crate::layout::{Face, Instance, Light, Material, Node, SceneHeader, SceneView, Texture, Triangle, Vertex};
+use crate::layout::{Emitter, EnvironmentMap, Face, Instance, Light, Material, Node, SceneHeader, SceneView, Texture, Triangle, Vertex};
 
 /// One array of the data heap, as it is uploaded.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +28,10 @@ pub struct SceneData {
     pub vertices: Vec<Vertex>,
     pub materials: Vec<Material>,
     pub lights: Vec<Light>,
+    /// What `path` samples; empty for the other integrators.
+    pub emitters: Vec<Emitter>,
+    /// The image around the scene, or nothing.
+    pub environments: Vec<EnvironmentMap>,
     pub textures: Vec<Texture>,
     /// 32-bit words of all images.
     pub texels: Vec<u32>,
@@ -52,6 +56,8 @@ impl SceneData {
             vertices: &self.vertices,
             materials: &self.materials,
             lights: &self.lights,
+            emitters: &self.emitters,
+            environments: &self.environments,
             textures: &self.textures,
             texels: &self.texels,
             tables: &self.tables,
@@ -73,6 +79,8 @@ impl SceneData {
             &mut header.first_texture,
             &mut header.first_texel,
             &mut header.first_table,
+            &mut header.first_emitter,
+            &mut header.first_environment_map,
         ];
         first.into_iter().for_each(|offset| *offset = 0);
         let instances: Vec<Instance> =
@@ -91,7 +99,7 @@ impl SceneData {
 
     /// The data heap: all arrays but nodes and triangles, one after the other, each from a whole 16-byte word on. Four
     /// top-level instances, texels or table entries share a word. `first_*` of the header are these `first_word`s.
-    pub fn heap_pieces(&self) -> [HeapPiece<'_>; 9] {
+    pub fn heap_pieces(&self) -> [HeapPiece<'_>; 11] {
         let mut next = 0;
         self.heap_arrays().map(|bytes| {
             let piece = HeapPiece { first_word: next, bytes };
@@ -122,11 +130,13 @@ impl SceneData {
             h.first_texture,
             h.first_texel,
             h.first_table,
+            h.first_emitter,
+            h.first_environment_map,
         ] = first;
         Ok(())
     }
 
-    fn heap_arrays(&self) -> [&[u8]; 9] {
+    fn heap_arrays(&self) -> [&[u8]; 11] {
         [
             bytemuck::cast_slice(&self.instances),
             bytemuck::cast_slice(&self.top_instances),
@@ -137,6 +147,8 @@ impl SceneData {
             bytemuck::cast_slice(&self.textures),
             bytemuck::cast_slice(&self.texels),
             bytemuck::cast_slice(&self.tables),
+            bytemuck::cast_slice(&self.emitters),
+            bytemuck::cast_slice(&self.environments),
         ]
     }
 }

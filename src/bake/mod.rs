@@ -4,8 +4,11 @@
 //! Only the shape of the hierarchies may differ; it never decides what is hit.
 
 mod albedo;
+mod alias;
 mod bvh;
 pub mod data;
+mod emitter;
+mod environment;
 pub mod filter;
 mod geometry;
 mod instance;
@@ -34,6 +37,9 @@ pub enum BakeError {
     /// A model whose shading has not landed yet.
     #[error("material \"{name}\": its model cannot be drawn yet")]
     Unfinished { name: String },
+    /// More than a random number can tell apart.
+    #[error("{count} triangles and lights glow; at most {most} are possible under direct and path")]
+    Emitters { count: usize, most: usize },
     /// A blend of blends of blends.
     #[error("material \"{name}\" blends more than 8 materials, or itself")]
     Blend { name: String },

@@ -15,9 +15,10 @@ const BLEND_LEAVES: usize = MAX_LEAVES as usize;
 /// Blends within blends, at most.
 const BLEND_DEPTH: usize = 8;
 
-/// One material; its table is appended to `tables`. A blend's materials are found by `bake_blends` later.
+/// One material; its table is appended to `tables`. `traced`: for path tracing, which wants reciprocal models. A blend's materials are found by `bake_blends` later.
 pub fn bake_material(
     material: &scene::Material,
+    traced: bool,
     tables: &mut Vec<f32>,
 ) -> Result<Material, BakeError> {
     let mut baked = Material {
@@ -39,7 +40,7 @@ pub fn bake_material(
     if !material.emission_two_sided {
         baked.flags |= MATERIAL_EMIT_ONE_SIDED;
     }
-    bake_model(material, &mut baked, tables)?;
+    bake_model(material, traced, &mut baked, tables)?;
     match material.transparency {
         None if matches!(material.model, Model::Null) => baked.k_t = 1.0,
         // What does not cover lets everything through (`path` draws it at random, the others as a branch).
@@ -56,6 +57,7 @@ pub fn bake_material(
 
 fn bake_model(
     material: &scene::Material,
+    traced: bool,
     baked: &mut Material,
     tables: &mut Vec<f32>,
 ) -> Result<(), BakeError> {
@@ -68,7 +70,7 @@ fn bake_model(
         Model::Phong { exponent, lafortune } => {
             baked.model = MODEL_PHONG;
             baked.exponent = *exponent;
-            baked.flags |= if *lafortune { MATERIAL_LAFORTUNE } else { 0 };
+            baked.flags |= if lafortune.unwrap_or(traced) { MATERIAL_LAFORTUNE } else { 0 };
         }
         Model::BlinnPhong { exponent } => {
             baked.model = MODEL_BLINN_PHONG;
@@ -259,11 +261,12 @@ fn place_children(materials: &[scene::Material], index: usize, baked: &mut Vec<M
 }
 
 /// Whether a surface of this material casts a shadow: what it says, or else all but transparent panes do, and what is not there.
-pub fn casts_shadow(material: &scene::Material) -> bool {
+/// `traced`: by paths, which find the way through a pane themselves.
+pub fn casts_shadow(material: &scene::Material, traced: bool) -> bool {
     let pane = match material.transparency {
         Some(Transparency::Interpolated { k_t } | Transparency::Filtered { k_t, .. }) => k_t > 0.0,
         None => matches!(material.model, Model::Null) || material.opacity == 0.0,
     };
-    material.casts_shadow.unwrap_or(!pane)
+    material.casts_shadow.unwrap_or(traced || !pane)
 }
 

@@ -1,6 +1,7 @@
 //! The whole scene: numbers its parts, shares what is the same, and fills in the header.
 
 use super::bvh::{Bounds, TOP_LEAF, Tree};
+use super::emitter::{bake_emitters, bake_surroundings};
 use super::filter::filter_table;
 use super::geometry::{BakedMesh, bake_mesh};
 use super::instance::{place, top_margin};
@@ -9,7 +10,7 @@ use super::model::{bake_blends, bake_material, casts_shadow};
 use super::srgb::srgb_table;
 use super::{BakeError, SceneData};
 use crate::layout::{
-    Camera, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH,
+    Camera, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH,
     KIND_SPHERE, SAMPLER_INDEPENDENT, SAMPLER_SOBOL, SAMPLER_STRATIFIED, STACK_SIZE, SceneHeader,
 };
 use crate::scene::{self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene};
@@ -35,6 +36,7 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     let meshes = bake_meshes(scene, default_material);
     let mut parts = place_objects(scene, &meshes, default_material, &mut data)?;
     parts.meshes = meshes;
+    bake_light_sources(scene, &parts, &mut data)?;
     build_hierarchy(parts, &mut data)?;
     data.header.instance_count = data.instances.len() as u32;
     data.header.light_count = data.lights.len() as u32;
@@ -48,10 +50,15 @@ fn check_count(what: &'static str, count: usize) -> Result<(), BakeError> {
     if count as u64 >= u64::from(INVALID) { Err(BakeError::TooLarge { what, count: count as u64 }) } else { Ok(()) }
 }
 
+/// Whether paths are traced.
+fn traced(scene: &Scene) -> bool {
+    matches!(scene.settings.integrator, Integrator::Direct | Integrator::Path)
+}
+
 /// Bakes all materials, and one more where an object or face names none. Returns the id of that one.
 fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, BakeError> {
     for material in &scene.materials {
-        data.materials.push(bake_material(material, &mut data.tables)?);
+        data.materials.push(bake_material(material, traced(scene), &mut data.tables)?);
     }
     let nameless = |object: &Object| match object.geometry {
         Geometry::Sphere => object.material.is_none(),
@@ -59,7 +66,7 @@ fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, Bak
     };
     let default = MaterialId(scene.materials.len() as u32);
     if scene.objects.iter().any(nameless) {
-        data.materials.push(bake_material(&Material::grey("default"), &mut data.tables)?);
+        data.materials.push(bake_material(&Material::grey("default"), traced(scene), &mut data.tables)?);
     }
     bake_blends(&scene.materials, &mut data.materials)?;
     check_count("table entries", data.tables.len())?;
@@ -74,6 +81,25 @@ fn bake_tables(filter: &scene::Filter, data: &mut SceneData) {
     (h.filter_kind, h.filter_radius, h.filter_norm) = (filter.kind, filter.radius, filter.norm);
     h.filter_table = data.tables.len() as u32;
     data.tables.extend(filter.table);
+}
+
+/// The image around the scene and, for path tracing, everything that glows.
+fn bake_light_sources(scene: &Scene, parts: &Parts, data: &mut SceneData) -> Result<(), BakeError> {
+    let environment = bake_surroundings(scene, data);
+    if data.header.integrator != INTEGRATOR_PATH {
+        return Ok(());
+    }
+    if scene.ambient != Vec3::ZERO {
+        data.warnings.push("ambient light has no effect under path and direct: light comes from what glows".to_owned());
+    }
+    let world = parts.shown.iter().fold(Bounds::EMPTY, |all, &(_, own)| all.union(own));
+    let primitives = |instance: usize| {
+        let mesh = parts.shown[instance].0.and_then(|id| parts.meshes[id].as_ref());
+        let mut primitives: Vec<u32> = mesh.map_or(Vec::new(), |mesh| mesh.triangles.iter().map(|t| t.primitive).collect());
+        primitives.sort_unstable();
+        primitives
+    };
+    bake_emitters(environment, &primitives, world, data)
 }
 
 /// Bakes each mesh that an object uses, once.
@@ -159,7 +185,7 @@ fn place_objects(
 /// Whether an object casts shadows: what it says, else what its material says. Shadow rays know instances, not
 /// faces: a mesh of both kinds of faces casts with all of them, and says so.
 fn instance_shadow(scene: &Scene, object: &Object) -> (bool, Option<String>) {
-    let of = |id: MaterialId| casts_shadow(&scene.materials[id.0 as usize]);
+    let of = |id: MaterialId| casts_shadow(&scene.materials[id.0 as usize], traced(scene));
     if let Some(casts) = object.casts_shadow {
         return (casts, None);
     }
@@ -242,16 +268,16 @@ fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
     if !(-100..=100).contains(&scene.film.unit_exponent) {
         return Err(BakeError::FilmUnit(scene.film.unit_exponent));
     }
+    let max_depth = if settings.integrator == Integrator::Direct { 1 } else { settings.max_depth };
     Ok(SceneHeader {
         camera: camera(&scene.camera, &scene.film)?,
         ambient: scene.ambient,
         integrator: match settings.integrator {
             Integrator::Local => INTEGRATOR_LOCAL,
             Integrator::Whitted => INTEGRATOR_WHITTED,
+            Integrator::Direct | Integrator::Path => INTEGRATOR_PATH,
         },
-        background_bottom: scene.background.bottom,
-        max_depth: settings.max_depth,
-        background_top: scene.background.top,
+        max_depth,
         min_weight: settings.min_weight,
         seed: settings.seed,
         sampling: match settings.sampler {
@@ -263,6 +289,9 @@ fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
         strata: if settings.sampler == Sampler::Stratified { strata(settings.samples) } else { 1 },
         shadows: u32::from(settings.shadows),
         film_scale: libm::ldexp(1.0, exponent) as f32,
+        rr_depth: settings.rr_depth,
+        clamp: settings.clamp.unwrap_or(0.0),
+        level_count: if settings.integrator == Integrator::Whitted { max_depth + 1 } else { 1 },
         ..SceneHeader::default()
     })
 }

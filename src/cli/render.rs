@@ -131,7 +131,7 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     };
     let show_progress = !quiet && !args.no_progress;
     let outcome = render_passes(renderer.as_mut(), crop, samples, args.time, &mut film, &interrupt, show_progress)?;
-    report(&film);
+    report(&film, &outcome.counters);
 
     args.picture.write(&mut film, format, &args.aov, output)?;
     if let Some(mut file) = stats_file {
@@ -191,7 +191,10 @@ fn render_passes(
 }
 
 /// Says what the user should know of the samples.
-fn report(film: &Film) {
+fn report(film: &Film, counters: &Counters) {
+    if counters.limited > 0 {
+        log::warn!("{} contributions were limited by \"clamp\": the picture is darker than the scene", counters.limited);
+    }
     if film.nan_count() > 0 {
         log::warn!("{} contributions were not a number and count as 0", film.nan_count());
     }

@@ -73,6 +73,8 @@ impl FromStr for Pixel {
 pub enum IntegratorName {
     Local,
     Whitted,
+    Direct,
+    Path,
 }
 
 /// The scene and what of it the command line changes.
@@ -136,6 +138,8 @@ impl SceneFlags {
         match self.integrator {
             Some(IntegratorName::Local) => settings.integrator = Integrator::Local,
             Some(IntegratorName::Whitted) => settings.integrator = Integrator::Whitted,
+            Some(IntegratorName::Direct) => settings.integrator = Integrator::Direct,
+            Some(IntegratorName::Path) => settings.integrator = Integrator::Path,
             None => {}
         }
         for warning in &scene.warnings {
@@ -256,6 +260,8 @@ pub fn film_of(scene: &Scene, data: &SceneData, crop: Rect) -> Film {
     let integrator = match scene.settings.integrator {
         Integrator::Local => "local",
         Integrator::Whitted => "whitted",
+        Integrator::Direct => "direct",
+        Integrator::Path => "path",
     };
     Film::new(FilmSpec {
         width: scene.film.width,

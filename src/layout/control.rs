@@ -14,7 +14,7 @@ pub struct DispatchArguments {
     pub z: u32,
 }
 
-/// One per device. 372 bytes.
+/// One per device. 376 bytes.
 /// A round is: schedule; extend (this round's chunk) and shadow (last round's queue); shade.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -43,6 +43,8 @@ pub struct Control {
     /// Contributions that were not a number; samples whose sum was clamped.
     pub nan_count: u32,
     pub clamped_count: u32,
+    /// Contributions that the scene's `clamp` has limited.
+    pub limited_count: u32,
     /// Rays traced, low and high words.
     pub closest_rays: [u32; 2],
     pub shadow_rays: [u32; 2],

@@ -74,8 +74,9 @@ pub struct Instance {
     pub flags: u32,
     /// Object id for the AOV: index of the object in the scene file, from 0.
     pub object: u32,
+    /// Density of light samples on it, as `Emitter.density`, divided by the luminance of the material's emission.
+    pub light_density: f32,
     pub _pad0: u32,
-    pub _pad1: u32,
 }
 
 /// Vertex indices (absolute, into the vertex array) and material of one face, in mesh order. 16 bytes.

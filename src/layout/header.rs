@@ -7,6 +7,8 @@ use super::camera::Camera;
 
 pub const INTEGRATOR_LOCAL: u32 = 0;
 pub const INTEGRATOR_WHITTED: u32 = 1;
+/// Path tracing; `direct` is its case of one scattering event.
+pub const INTEGRATOR_PATH: u32 = 2;
 
 pub const SAMPLER_SOBOL: u32 = 0;
 pub const SAMPLER_STRATIFIED: u32 = 1;
@@ -17,7 +19,7 @@ pub const FILTER_TENT: u32 = 1;
 /// Gaussian, Mitchell and other tabulated filters: piecewise constant, sampled through their inverse CDF.
 pub const FILTER_TABLE: u32 = 2;
 
-/// Scene-wide values. 256 bytes. `first_*` are offsets into the data heap in 16-byte words.
+/// Scene-wide values. 288 bytes. `first_*` are offsets into the data heap in 16-byte words.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SceneHeader {
@@ -69,9 +71,23 @@ pub struct SceneHeader {
     pub aovs: u32,
     /// Relative widening of the top level's box test (`approx_intersect_node`): covers the rounding of rays in object space.
     pub top_margin: f32,
+    pub emitter_count: u32,
+    pub first_emitter: u32,
+    /// 1 if an image surrounds the scene, at `first_environment_map`; else the gradient does.
+    pub environment_maps: u32,
+    pub first_environment_map: u32,
+    /// First float in the table array of the emitters' alias table: threshold and other emitter's index of each.
+    pub emitter_table: u32,
+    /// Probability of choosing the environment among the emitters; 0 if it is none.
+    pub environment_density: f32,
+    /// Rays that have scattered this often or more take part in Russian roulette (path).
+    pub rr_depth: u32,
+    /// Largest |lane| of light that has been scattered, per contribution; 0 for no limit (path).
+    pub clamp: f32,
+    /// Levels of pending rays: one per depth where rays branch, else one.
+    pub level_count: u32,
     pub _pad0: u32,
     pub _pad1: u32,
-    pub _pad2: u32,
 }
 
 /// Intervals in the tabulated filter's inverse CDF.

@@ -9,6 +9,7 @@
 
 pub mod camera;
 pub mod control;
+pub mod emitter;
 pub mod film;
 pub mod geometry;
 pub mod header;
@@ -19,6 +20,7 @@ pub mod texture;
 
 pub use camera::*;
 pub use control::*;
+pub use emitter::*;
 pub use film::*;
 pub use geometry::*;
 pub use header::*;
@@ -42,6 +44,8 @@ pub struct SceneView<'a> {
     pub vertices: &'a [Vertex],
     pub materials: &'a [Material],
     pub lights: &'a [Light],
+    pub emitters: &'a [Emitter],
+    pub environments: &'a [EnvironmentMap],
     pub textures: &'a [Texture],
     pub texels: &'a [u32],
     pub tables: &'a [f32],
@@ -66,6 +70,8 @@ loads! {
     load_vertex: vertices -> Vertex;
     load_material: materials -> Material;
     load_light: lights -> Light;
+    load_emitter: emitters -> Emitter;
+    load_environment_map: environments -> EnvironmentMap;
     load_texture: textures -> Texture;
     load_texel: texels -> u32;
     load_table: tables -> f32;

@@ -61,7 +61,9 @@ pub struct PathState {
     pub coverage: f32,
     /// Relative index of the medium the ray travels in (1 outside everything).
     pub eta: f32,
-    pub _pad0: u32,
+    /// Density per solid angle with which the ray's direction was drawn where it left a surface; 0 if no light sample there
+    /// could have had it: camera rays, directions of zero width, what has passed a pane (path).
+    pub pdf: f32,
     /// Beer coefficient of that medium, per scene unit.
     pub absorption: Vec3,
     pub _pad1: u32,

@@ -22,6 +22,8 @@ pub struct Job {
 pub struct Counters {
     pub closest_rays: u64,
     pub shadow_rays: u64,
+    /// Contributions that the scene's `clamp` has limited (before their shadow rays were traced).
+    pub limited: u64,
     /// Seconds on the device's own clock by stage (extend, shade, shadow, other); zero where it has none.
     pub extend_s: f64,
     pub shade_s: f64,
@@ -33,6 +35,7 @@ impl std::ops::AddAssign for Counters {
     fn add_assign(&mut self, other: Self) {
         self.closest_rays += other.closest_rays;
         self.shadow_rays += other.shadow_rays;
+        self.limited += other.limited;
         self.extend_s += other.extend_s;
         self.shade_s += other.shade_s;
         self.shadow_s += other.shadow_s;

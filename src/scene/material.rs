@@ -108,10 +108,10 @@ pub enum Model {
     OrenNayar {
         sigma: f32,
     },
-    /// (V.R)^n; `lafortune` normalises the lobe, else it is as printed in 1975.
+    /// (V.R)^n; `lafortune` normalises the lobe, else it is as printed in 1975; None: normalised under path tracing only.
     Phong {
         exponent: f32,
-        lafortune: bool,
+        lafortune: Option<bool>,
     },
     /// (N.H)^n.
     BlinnPhong {

@@ -22,7 +22,7 @@ pub use material::{
     Transparency, WardNormalisation,
 };
 pub use mesh::Mesh;
-pub use settings::{Background, Film, Filter, Integrator, RenderSettings, Sampler, ToneMap};
+pub use settings::{Background, Environment, Film, Filter, Integrator, RenderSettings, Sampler, ToneMap};
 pub use table::Table;
 pub use texture::{Texture, TextureData, Wrap};
 pub use transform::Transform;

@@ -1,6 +1,6 @@
 //! What to compute and how the result is shown.
 
-use super::Rgb;
+use super::{Rgb, TextureId, Transform};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
@@ -9,6 +9,10 @@ pub enum Integrator {
     /// Whitted 1980: shadow, mirror and refracted rays to a depth.
     #[default]
     Whitted,
+    /// Path tracing of one scattering event: light from emitters only (`Path` with a depth of 1).
+    Direct,
+    /// Path tracing (Kajiya 1986).
+    Path,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,13 +59,41 @@ pub enum ToneMap {
     Reinhard,
 }
 
-/// What a ray that leaves the scene sees: a vertical gradient, flat if both are equal.
+/// What a ray that leaves the scene sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Background {
-    /// Towards -y.
-    pub bottom: Rgb,
-    /// Towards +y.
-    pub top: Rgb,
+pub enum Background {
+    /// A vertical gradient from `bottom` (-y) to `top` (+y), flat if both are equal.
+    Gradient { bottom: Rgb, top: Rgb },
+    /// An image all around.
+    Image(Environment),
+}
+
+/// An equirectangular image: its top row is +y, its centre +z, a quarter from the left +x (the latitude-longitude
+/// convention of OpenEXR).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Environment {
+    pub texture: TextureId,
+    /// Factor on the image.
+    pub scale: Rgb,
+    /// Rotation; only the linear part counts, without its scale.
+    pub to_world: Transform,
+}
+
+impl Background {
+    pub const BLACK: Self = Self::flat(Rgb::ZERO);
+
+    /// The same in every direction.
+    pub const fn flat(color: Rgb) -> Self {
+        Self::Gradient { bottom: color, top: color }
+    }
+
+    /// False if it shines nowhere.
+    pub fn shines(&self) -> bool {
+        match self {
+            Self::Gradient { bottom, top } => *bottom != Rgb::ZERO || *top != Rgb::ZERO,
+            Self::Image(environment) => environment.scale != Rgb::ZERO,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,5 +107,9 @@ pub struct RenderSettings {
     pub max_depth: u32,
     /// Branches whose largest weight falls below this are cut (whitted).
     pub min_weight: f32,
+    /// Scattering events from which on Russian roulette may end a path, 0 to 65; more than `max_depth`: never (path).
+    pub rr_depth: u32,
+    /// Largest channel of what one contribution of scattered light may add to a pixel (path).
+    pub clamp: Option<f32>,
     pub shadows: bool,
 }

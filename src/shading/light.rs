@@ -22,8 +22,17 @@ pub struct LightSample {
     pub wi: Vec3,
     /// World units; `T_INFINITE` for a directional light.
     pub distance: f32,
-    /// Intensity (directional: irradiance) times attenuation and cone: the outgoing radiance is `eval` times this.
+    /// Outgoing radiance is `eval` times this: of a light of no size intensity (directional: irradiance) times attenuation
+    /// and cone; of another, and where the light was chosen at random, divided by the density of that choice.
     pub radiance: Spectrum,
+    /// With which `wi` was drawn; 0 for a light of no size, which no other ray meets.
+    pub pdf_solid_angle: f32,
+}
+
+/// No light, from a valid direction.
+#[inline]
+pub fn no_light() -> LightSample {
+    LightSample { wi: Vec3::new(0.0, 0.0, 1.0), distance: 0.0, radiance: spectrum_zero(), pdf_solid_angle: 0.0 }
 }
 
 /// Fall-off with distance, 0.. : 1/d^2, or the lecture's min(1, 1/(c1 + c2 d + c3 d^2)), or 1.
@@ -63,12 +72,13 @@ pub fn sample_light(light: &Light, position: Vec3) -> LightSample {
             wi: -light.direction,
             distance: T_INFINITE,
             radiance: spectrum_from_rgb(light.intensity),
+            pdf_solid_angle: 0.0,
         };
     }
     let to_light = light.position - position;
     let distance2 = dot3(to_light, to_light);
     if distance2 < DISTANCE2_MIN || distance2 > DISTANCE2_MAX {
-        return LightSample { wi: Vec3::new(0.0, 0.0, 1.0), distance: 0.0, radiance: spectrum_zero() };
+        return no_light();
     }
     let inverse = rsqrt(distance2);
     let wi = to_light * inverse;
@@ -77,5 +87,5 @@ pub fn sample_light(light: &Light, position: Vec3) -> LightSample {
     if light.kind == LIGHT_SPOT {
         factor *= spot_factor(light, -dot3(wi, light.direction));
     }
-    LightSample { wi, distance, radiance: spectrum_from_rgb(light.intensity * factor) }
+    LightSample { wi, distance, radiance: spectrum_from_rgb(light.intensity * factor), pdf_solid_angle: 0.0 }
 }

@@ -152,6 +152,13 @@ pub fn mirror_weight(material: &Material, cos_o: f32) -> Spectrum {
     }
 }
 
+/// Radiance the surface sends out by itself, the same in every direction: its emission, and the colour of an emissive one.
+#[inline]
+pub fn emission_material(material: &Material) -> Vec3 {
+    let shown = if material.model == MODEL_EMISSIVE { material.color } else { Vec3::ZERO };
+    material.emission + shown
+}
+
 /// Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) where there is an interface.
 #[inline]
 pub fn albedo_material(material: &Material) -> Spectrum {

@@ -26,6 +26,7 @@ pub mod cook_torrance;
 pub mod delta;
 pub mod dielectric;
 pub mod distribution;
+pub mod environment;
 pub mod filter;
 pub mod frame;
 pub mod fresnel;

@@ -50,7 +50,7 @@ pub fn generate(scene: &SceneView, batch: &Batch, slot: u32) -> PathState {
         depth: 0,
         coverage: filter.weight,
         eta: 1.0,
-        _pad0: 0,
+        pdf: 0.0,
         absorption: Vec3::ZERO,
         _pad1: 0,
     }

@@ -7,7 +7,7 @@ use crate::layout::{
 };
 use crate::shading::frame::{Frame, frame_from_normal, frame_from_tangent, to_local};
 use crate::shading::light::sample_light;
-use crate::shading::material::{ambient_material, eval_material, is_delta};
+use crate::shading::material::{ambient_material, emission_material, eval_material, is_delta};
 use crate::shading::math::{dot3, normalize3};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_max, spectrum_zero};
@@ -18,7 +18,7 @@ use glam::{Vec3, Vec4};
 /// Smallest cosine between shading normal and viewer; interpolated normals that face away are bent up to it.
 const COS_VIEW_MIN: f32 = 1.0e-3;
 /// A shadow ray ends this fraction short of its light, so that a lamp's own glass does not hide it.
-const SHADOW_END: f32 = 0.9999;
+pub const SHADOW_END: f32 = 0.9999;
 
 /// The shading normal a viewer at `wo` sees: on the viewer's side of the surface (both sides are shaded alike), and
 /// bent towards the viewer where interpolation has turned it away.
@@ -54,7 +54,7 @@ pub fn emitted(surface: &Surface, material: &Material, wo: Vec3) -> Vec3 {
     if (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0 && dot3(surface.normal_geometric, wo) < 0.0 {
         return Vec3::ZERO;
     }
-    material.emission
+    emission_material(material)
 }
 
 /// How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).

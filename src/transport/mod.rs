@@ -5,10 +5,15 @@
 //! Twins in `shaders/transport/`. What a step appends goes through `push_path`, `push_shadow`, `add_contribution` and
 //! `add_aov`; on the device these are the kernels' queues (`shaders/kernels/queues.glsl`).
 
+pub mod area_light;
+pub mod emitter;
 pub mod film;
 pub mod generate;
 pub mod local;
+pub mod path;
 pub mod shade;
+pub mod textured;
+pub mod weight;
 pub mod whitted;
 
 use crate::layout::{AovPixel, FilmSum, PathState, ShadowRay};
@@ -16,6 +21,12 @@ use glam::{Vec3, Vec4};
 
 /// Dimensions of a sample's random numbers: pairs drawn for the named purpose.
 pub const DIMENSION_FILTER: u32 = 0;
+pub const DIMENSION_LIGHT_CHOICE: u32 = 16;
+pub const DIMENSION_LIGHT: u32 = 17;
+pub const DIMENSION_BSDF: u32 = 18;
+pub const DIMENSION_LOBE: u32 = 19;
+pub const DIMENSION_ROULETTE: u32 = 20;
+pub const DIMENSION_PANE: u32 = 21;
 /// Dither of contributions: emission and ambient, background, alpha; light i takes `DITHER_LIGHT + i`.
 pub const DITHER_SURFACE: u32 = 0x1000_0000;
 pub const DITHER_BACKGROUND: u32 = 0x1000_0001;
@@ -25,6 +36,8 @@ pub const DITHER_LIGHT: u32 = 0x2000_0000;
 pub const LOBE_THROUGH: u32 = 1;
 pub const LOBE_MIRROR: u32 = 2;
 pub const LOBE_REFRACT: u32 = 3;
+/// The one continuation of a traced path.
+pub const LOBE_SCATTER: u32 = 4;
 
 /// Where the steps of one sample put what they make. The backend empties it.
 #[derive(Debug, Default)]
@@ -32,6 +45,8 @@ pub struct Queues {
     /// The sample's sum so far (the device keeps one per slot).
     pub sum: FilmSum,
     pub nan_count: u64,
+    /// Contributions that the scene's `clamp` has limited.
+    pub limited_count: u64,
     /// The sample's auxiliary values (only if the header asks for them).
     pub aov: AovPixel,
     pub paths: Vec<PathState>,
@@ -46,6 +61,11 @@ pub fn push_path(queues: &mut Queues, path: PathState) {
 /// Appends a shadow ray.
 pub fn push_shadow(queues: &mut Queues, shadow: ShadowRay) {
     queues.shadows.push(shadow);
+}
+
+/// Notes that a contribution was limited.
+pub fn count_limited(queues: &mut Queues) {
+    queues.limited_count += 1;
 }
 
 /// Adds `value` (radiance and alpha, throughput included) to the sample in `slot`.

@@ -2,39 +2,21 @@
 
 use super::generate::sample_key;
 use super::local::shade_local;
+use super::path::{shade_escape, shade_path};
+use super::textured::material_at;
 use super::whitted::shade_whitted;
 use super::{DITHER_BACKGROUND, Queues, add_aov, add_contribution};
-use crate::layout::{Hit, INTEGRATOR_WHITTED, INVALID, Material, PathState, SceneView, load_material, load_texture};
+use crate::layout::{Hit, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, PathState, SceneView};
 use crate::shading::dielectric::transmittance;
+use crate::shading::environment::background;
 use crate::shading::material::albedo_material;
-use crate::shading::math::mix_;
 use crate::shading::sampling::dither_hash;
-use crate::shading::spectrum::{spectrum_from_rgb, spectrum_max};
-use crate::shading::texture::sample_texture;
-use crate::trace::surface::{Surface, surface_at};
+use crate::shading::spectrum::spectrum_max;
+use crate::trace::surface::surface_at;
 use glam::{Vec3, Vec4};
 
 /// Throughput below this is nothing, on every device alike (strict rule 4).
 const THROUGHPUT_MIN: f32 = 1.0e-30;
-
-/// Radiance where a ray leaves the scene: a gradient over the direction's height, -y to +y.
-pub fn background(scene: &SceneView, direction: Vec3) -> Vec3 {
-    let height = direction.y * 0.5 + 0.5;
-    let bottom = scene.header.background_bottom;
-    let top = scene.header.background_top;
-    Vec3::new(mix_(bottom.x, top.x, height), mix_(bottom.y, top.y, height), mix_(bottom.z, top.z, height))
-}
-
-/// The surface's material with its texture and vertex colour applied.
-pub fn material_at(scene: &SceneView, surface: &Surface) -> Material {
-    let mut material = load_material(scene, surface.material);
-    material.color *= surface.color;
-    if material.color_texture != INVALID {
-        let texel = sample_texture(scene, &load_texture(scene, material.color_texture), surface.uv);
-        material.color *= Vec3::new(texel.x, texel.y, texel.z);
-    }
-    material
-}
 
 /// Shades one path: adds what it sees, appends shadow rays and the rays that go on.
 pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Queues) {
@@ -43,8 +25,11 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     let key = sample_key(scene.header, path.pixel, path.sample_index, path.path_id);
     if hit.instance == INVALID {
         if !(straight && scene.header.hide_background != 0) {
-            let radiance = spectrum_from_rgb(background(scene, path.ray.direction));
-            let seen = path.throughput * radiance;
+            if scene.header.integrator == INTEGRATOR_PATH {
+                shade_escape(scene, &path, key, queues);
+                return;
+            }
+            let seen = path.throughput * background(scene, path.ray.direction);
             let dither = dither_hash(key, DITHER_BACKGROUND);
             add_contribution(
                 queues,
@@ -67,6 +52,10 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
         let albedo = albedo_material(&material);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
         add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
+    }
+    if scene.header.integrator == INTEGRATOR_PATH {
+        shade_path(scene, &path, key, hit, &surface, &material, queues);
+        return;
     }
     shade_local(scene, &path, key, &surface, &material, queues);
     if scene.header.integrator == INTEGRATOR_WHITTED && path.depth < scene.header.max_depth {

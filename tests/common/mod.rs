@@ -129,6 +129,8 @@ pub fn empty_scene() -> Scene {
             sampler: Sampler::Sobol,
             max_depth: 4,
             min_weight: 0.001,
+            rr_depth: 5,
+            clamp: None,
             shadows: true,
         },
         camera: Camera {
@@ -137,7 +139,7 @@ pub fn empty_scene() -> Scene {
             up: Vec3::Y,
             projection: Projection::Perspective { fov_y: 1.0 },
         },
-        background: Background { bottom: Vec3::ZERO, top: Vec3::ZERO },
+        background: Background::BLACK,
         ambient: Vec3::ZERO,
         materials: vec![Material::grey("grey")],
         textures: Vec::new(),

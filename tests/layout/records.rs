@@ -89,7 +89,7 @@ records! {
         origin, exponents_imask, child_base, primitive_base, child_meta, min_x, max_x, min_y, max_y, min_z, max_z,
     }
     Triangle { v0, primitive, v1, _pad0, v2, _pad1 }
-    Instance { to_world, to_object, kind, root, first_face, material, flags, object, _pad0, _pad1 }
+    Instance { to_world, to_object, kind, root, first_face, material, flags, object, light_density, _pad0 }
     Face { i0, i1, i2, material }
     Vertex { position, u, normal, v, color, _pad0 }
     Material {
@@ -105,7 +105,7 @@ records! {
     }
     Hit { t, b1, b2, instance, primitive, _pad0, _pad1, _pad2 }
     PathState {
-        ray, throughput, slot, pixel, sample_index, path_id, depth, coverage, eta, _pad0, absorption, _pad1,
+        ray, throughput, slot, pixel, sample_index, path_id, depth, coverage, eta, pdf, absorption, _pad1,
     }
     ShadowRay { ray, contribution, slot, dither, _pad0, _pad1 }
     Camera {
@@ -115,8 +115,9 @@ records! {
         camera, ambient, integrator, background_bottom, max_depth, background_top, min_weight, seed, sampling,
         strata, shadows, filter_kind, filter_radius, filter_norm, filter_table, top_root, instance_count,
         light_count, material_count, first_instance, first_top_instance, first_face, first_vertex, first_material,
-        first_light, first_texture, first_texel, first_table, film_scale, hide_background, aovs, top_margin, _pad0,
-        _pad1, _pad2,
+        first_light, first_texture, first_texel, first_table, film_scale, hide_background, aovs, top_margin,
+        emitter_count, first_emitter, environment_maps, first_environment_map, emitter_table, environment_density,
+        rr_depth, clamp, level_count, _pad0, _pad1,
     }
     Batch {
         crop_x, crop_y, crop_width, crop_height, first_pixel, pixel_count, first_sample, sample_count, slot_count,
@@ -129,8 +130,10 @@ records! {
     Control {
         extend, shadow, shade, done, chunk_level, chunk_first, chunk_count, shadow_pending, shadow_count,
         chunk_limit, level0_capacity, level_capacity, shadow_capacity, overflows, nan_count, clamped_count,
-        closest_rays, shadow_rays, rounds, level_count,
+        limited_count, closest_rays, shadow_rays, rounds, level_count,
     }
+    Emitter { corner, kind, edge1, instance, edge2, primitive, normal, density, radiance, flags }
+    EnvironmentMap { to_local, scale, texture, width, height, first_table, _pad0 }
 }
 
 /// Public structs of `src/layout` that stay on the host.
@@ -166,7 +169,7 @@ constants! {
     CAMERA_PERSPECTIVE CAMERA_ORTHOGRAPHIC
     MAX_LEVELS STACK_SIZE
     KIND_MESH KIND_SPHERE INSTANCE_NO_SHADOW INSTANCE_MIRRORED
-    INTEGRATOR_LOCAL INTEGRATOR_WHITTED
+    INTEGRATOR_LOCAL INTEGRATOR_WHITTED INTEGRATOR_PATH
     SAMPLER_SOBOL SAMPLER_STRATIFIED SAMPLER_INDEPENDENT
     FILTER_BOX FILTER_TENT FILTER_TABLE FILTER_KNOTS
     LIGHT_POINT LIGHT_DIRECTIONAL LIGHT_SPOT
@@ -176,6 +179,7 @@ constants! {
     MATERIAL_FILTERED MATERIAL_CONDUCTOR MATERIAL_LAFORTUNE MATERIAL_D_1982
     MATERIAL_SCHLICK MATERIAL_SMITH MATERIAL_ANISOTROPIC MATERIAL_NONLINEAR MATERIAL_COMPENSATE MATERIAL_ONE_SIDED MATERIAL_EMIT_ONE_SIDED MATERIAL_WARD_1992 MATERIAL_WARD_DUER MATERIAL_TRANSMISSIVE DISTRIBUTION_SHIFT ALBEDO_HEADER ALBEDO_KNOTS MAX_LEAVES
     DISTRIBUTION_BECKMANN DISTRIBUTION_GAUSSIAN DISTRIBUTION_TROWBRIDGE_REITZ DISTRIBUTION_PHONG
+    EMITTER_TRIANGLE EMITTER_SPHERE EMITTER_LIGHT EMITTER_ENVIRONMENT EMITTER_ONE_SIDED EMITTER_TEXTURED
     T_INFINITE
     TEXEL_SRGB8 TEXEL_LINEAR8 TEXEL_FLOAT
     WRAP_REPEAT WRAP_CLAMP WRAP_MIRROR

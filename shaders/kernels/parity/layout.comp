@@ -3,11 +3,11 @@
 // tests/layout.rs reflects the SPIR-V of this kernel (names, types, offsets, strides, constants), which needs no device.
 //
 // On a device, one dispatch checks one record. Set 0 (several blocks share each binding: one per record):
-// * binding 0: a SceneHeader (256 bytes), then the records to read, back to back.
+// * binding 0: a SceneHeader (288 bytes), then the records to read, back to back.
 //   `header.first_*` of the record must be FIRST_WORD; give the others 0xffffff so that a mix-up is seen.
 // * binding 1: the same records as they were read, from byte 0 on; or the constants, one u32 each.
 // * push constants: `record` (its number in `main`, or RECORD_COUNT for the constants), `count` (records to read).
-// One invocation a record. What binding 1 holds must be what was given from byte 256 on: words 0, 1, 2, ... show
+// One invocation a record. What binding 1 holds must be what was given from byte 288 on: words 0, 1, 2, ... show
 // where a misplaced member came from.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
@@ -16,8 +16,8 @@
 layout(local_size_x_id = 0, local_size_y = 1, local_size_z = 1) in;
 layout(push_constant, scalar) uniform Choice { uint record; uint count; };
 
-const uint RECORD_COUNT = 19u;
-const uint FIRST_WORD = 16u;
+const uint RECORD_COUNT = 21u;
+const uint FIRST_WORD = 18u;
 layout(set = 0, binding = 0, scalar) readonly buffer Heap { uvec4 heap[]; };
 
 // What kernels/bindings.glsl declares, over one heap: `load_*` reads it word by word.
@@ -68,6 +68,8 @@ OUT(AovPixel, aov_pixel);
 OUT(Ray, ray);
 OUT(DispatchArguments, dispatch_arguments);
 OUT(Control, control);
+OUT(Emitter, emitter);
+OUT(EnvironmentMap, environment_map);
 layout(set = 0, binding = 1, scalar) writeonly buffer ConstantsOut { uint constants[]; };
 
 // Every constant of layout/*.glsl; floats by their bits. A new one is appended here (tests/layout.rs asks for it).
@@ -159,6 +161,15 @@ void store_constants() {
     constants[84] = ALBEDO_HEADER;
     constants[85] = ALBEDO_KNOTS;
     constants[86] = MAX_LEAVES;
+    constants[87] = INTEGRATOR_PATH;
+    constants[88] = EMITTER_TRIANGLE;
+    constants[89] = EMITTER_SPHERE;
+    constants[90] = EMITTER_LIGHT;
+    constants[91] = EMITTER_ENVIRONMENT;
+    constants[92] = EMITTER_ONE_SIDED;
+    constants[93] = EMITTER_TEXTURED;
+    constants[94] = EMITTER_WORDS;
+    constants[95] = ENVIRONMENT_MAP_WORDS;
 }
 
 void main() {
@@ -188,5 +199,7 @@ void main() {
     case 16u: ray_out[i] = ray_in[i]; break;
     case 17u: dispatch_arguments_out[i] = dispatch_arguments_in[i]; break;
     case 18u: control_out[i] = control_in[i]; break;
+    case 19u: emitter_out[i] = load_emitter(i); break;
+    case 20u: environment_map_out[i] = load_environment_map(i); break;
     }
 }

@@ -28,6 +28,7 @@ struct Tally {
     closest_rays: AtomicU64,
     shadow_rays: AtomicU64,
     nan_count: AtomicU64,
+    limited_count: AtomicU64,
     clamped_count: AtomicU64,
 }
 
@@ -145,6 +146,7 @@ impl Renderer for CpuRenderer<'_> {
             tally.shadow_rays.fetch_add(std::mem::take(&mut worker.shadow_rays), Ordering::Relaxed);
             tally.clamped_count.fetch_add(std::mem::take(&mut worker.clamped_count), Ordering::Relaxed);
             tally.nan_count.fetch_add(std::mem::take(&mut worker.queues.nan_count), Ordering::Relaxed);
+            tally.limited_count.fetch_add(std::mem::take(&mut worker.queues.limited_count), Ordering::Relaxed);
             (watch.advance)(sums.len() as u64 * u64::from(job.samples.end - job.samples.start));
         };
         self.pool.install(|| {
@@ -172,6 +174,7 @@ impl Renderer for CpuRenderer<'_> {
         Ok(Counters {
             closest_rays: tally.closest_rays.into_inner(),
             shadow_rays: tally.shadow_rays.into_inner(),
+            limited: tally.limited_count.into_inner(),
             ..Counters::default()
         })
     }

@@ -3,7 +3,7 @@
 use super::device::{DeviceInfo, DeviceKind};
 use super::error::VulkanError;
 use crate::film::Rect;
-use crate::layout::{AovPixel, Batch, FilmSum, Hit, INTEGRATOR_LOCAL, PathState, SceneHeader, ShadowRay};
+use crate::layout::{AovPixel, Batch, FilmSum, Hit, INTEGRATOR_PATH, PathState, SceneHeader, ShadowRay};
 use crate::shaders::Fetch;
 use std::ops::Range;
 
@@ -48,12 +48,11 @@ impl QueuePlan {
     }
 
     fn of_batch(batch: u32, header: &SceneHeader, chunk: Option<u32>) -> QueuePlan {
-        let lights = header.light_count.max(1);
-        // A shaded path sends one shadow ray to each light; four for each slot is room for most scenes.
+        // A shaded path sends one shadow ray to each light, or to one emitter; four for each slot is room for most scenes.
+        let lights = if header.integrator == INTEGRATOR_PATH { 1 } else { header.light_count.max(1) };
         let fitting = (u64::from(batch) * 4 / u64::from(lights)).clamp(1, batch.into()) as u32;
         let chunk = fitting.min(chunk.unwrap_or(u32::MAX)).max(1);
-        let levels = if header.integrator == INTEGRATOR_LOCAL { 1 } else { header.max_depth + 1 };
-        QueuePlan { batch, chunk, levels, shadows: chunk.saturating_mul(lights) }
+        QueuePlan { batch, chunk, levels: header.level_count, shadows: chunk.saturating_mul(lights) }
     }
 
     /// Entries of levels from 1 on: room for two branches of each ray of a full chunk.
@@ -172,7 +171,7 @@ mod tests {
 
     #[test]
     fn many_lights_make_chunks_small_instead_of_losing_shadow_rays() {
-        let header = SceneHeader { light_count: 1000, max_depth: 3, integrator: 1, ..SceneHeader::default() };
+        let header = SceneHeader { light_count: 1000, level_count: 4, integrator: 1, ..SceneHeader::default() };
         let plan = QueuePlan::of_batch(1 << 16, &header, None);
         assert_eq!((plan.chunk, plan.shadows, plan.levels), (262, 262_000, 4));
         let plan = QueuePlan::of_batch(64, &SceneHeader { light_count: 1_000_000, ..header }, None);

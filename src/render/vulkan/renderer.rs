@@ -69,6 +69,7 @@ impl Tally {
         // 32-bit counters may wrap in a long job; differences do not.
         self.nan_count += u64::from(control.nan_count.wrapping_sub(self.last.nan_count));
         self.clamped_count += u64::from(control.clamped_count.wrapping_sub(self.last.clamped_count));
+        self.counters.limited += u64::from(control.limited_count.wrapping_sub(self.last.limited_count));
         let wide = |words: [u32; 2]| u64::from(words[0]) | u64::from(words[1]) << 32;
         self.counters.closest_rays = wide(control.closest_rays);
         self.counters.shadow_rays = wide(control.shadow_rays);

@@ -54,7 +54,7 @@ fn plan_pages(words: [u64; 3], limit: u64) -> Result<PagePlan, String> {
 }
 
 /// The heap's arrays: place of the first byte's word, and the bytes.
-fn heap_parts(data: &SceneData) -> [(u32, &[u8]); 9] {
+fn heap_parts(data: &SceneData) -> [(u32, &[u8]); 11] {
     let header = &data.header;
     [
         (header.first_instance, bytemuck::cast_slice(&data.instances)),
@@ -66,6 +66,8 @@ fn heap_parts(data: &SceneData) -> [(u32, &[u8]); 9] {
         (header.first_texture, bytemuck::cast_slice(&data.textures)),
         (header.first_texel, bytemuck::cast_slice(&data.texels)),
         (header.first_table, bytemuck::cast_slice(&data.tables)),
+        (header.first_emitter, bytemuck::cast_slice(&data.emitters)),
+        (header.first_environment_map, bytemuck::cast_slice(&data.environments)),
     ]
 }
 

@@ -48,10 +48,12 @@ pub fn bare_scene(path: &Path) -> Scene {
             sampler: Sampler::Sobol,
             max_depth: 8,
             min_weight: 0.003,
+            rr_depth: 5,
+            clamp: None,
             shadows: true,
         },
         camera: NO_CAMERA,
-        background: Background { bottom: Rgb::ZERO, top: Rgb::ZERO },
+        background: Background::BLACK,
         ambient: Rgb::ZERO,
         materials: Vec::new(),
         textures: Vec::new(),
@@ -83,7 +85,7 @@ pub fn stage(scene: &mut Scene) {
             false => light_object(scene),
         }
         scene.ambient = Rgb::splat(if room { 2.0 * AMBIENT } else { AMBIENT });
-        scene.background = Background { bottom: Rgb::new(0.55, 0.55, 0.55), top: Rgb::new(0.72, 0.8, 0.92) };
+        scene.background = Background::Gradient { bottom: Rgb::new(0.55, 0.55, 0.55), top: Rgb::new(0.72, 0.8, 0.92) };
     }
     if no_camera && no_lights && !room && bounds.wants_ground() {
         add_ground(scene, &bounds);

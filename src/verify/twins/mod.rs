@@ -3,6 +3,7 @@
 pub mod film;
 pub mod math;
 pub mod models;
+pub mod path;
 pub mod shading;
 pub mod trace;
 pub mod warp;
@@ -32,7 +33,7 @@ pub struct Family {
 
 /// All of them.
 pub static FAMILIES: &[Family] =
-    &[math::FAMILY, film::FAMILY, shading::FAMILY, models::FAMILY, warp::FAMILY, trace::FAMILY];
+    &[math::FAMILY, film::FAMILY, shading::FAMILY, models::FAMILY, warp::FAMILY, trace::FAMILY, path::FAMILY];
 
 /// The arguments of one evaluation, read as the harness in GLSL reads them.
 pub struct In<'a>(&'a [u32]);

@@ -9,7 +9,7 @@ use crate::layout::{
     MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneHeader, SceneView,
 };
 use crate::shading::material::{
-    albedo_material, ambient_material, eval_material, is_delta, mirror_weight, pdf_material, sample_material,
+  albedo_material, ambient_material, emission_material, eval_material, is_delta, mirror_weight, pdf_material, sample_material,
 };
 use crate::shading::sampling::{hash_u32, unit_float};
 use crate::verify::inputs::Domain::{self, Below, Direction, Range};
@@ -53,6 +53,8 @@ fn tables() -> SceneView<'static> {
         vertices: &[],
         materials: &[],
         lights: &[],
+        emitters: &[],
+        environments: &[],
         textures: &[],
         texels: &[],
         tables: &TABLES,
@@ -98,6 +100,7 @@ fn sample(i: &In, o: &mut Out, model: u32) {
 fn rest(i: &In, o: &mut Out, model: u32) {
     let m = material(i, model);
     o.f(ambient_material(&m).x).f(albedo_material(&m).y).v4(mirror_weight(&m, i.f(5))).u(u32::from(is_delta(&m)));
+    o.f(emission_material(&m).x);
 }
 
 macro_rules! model {

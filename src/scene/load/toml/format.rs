@@ -25,9 +25,9 @@ pub static RENDER: Section = Section {
     keys: &[
         key(
             "integrator",
-            Kind::Choice(&["local", "whitted"]),
+            Kind::Choice(&["local", "whitted", "direct", "path"]),
             "`\"whitted\"`",
-            "`local`: the illumination model alone, with shadows. `whitted`: mirror and refracted rays as well (Whitted 1980)",
+            "`local`: the illumination model alone, with shadows. `whitted`: mirror and refracted rays as well (Whitted 1980). `path`: global illumination by path tracing; everything that glows lights the rest, ambient light is left out. `direct`: `path` with one scattering event",
         ),
         key("samples", Kind::Integer { min: 1, max: 1 << 24 }, "16", "Samples a pixel"),
         key("seed", Kind::Integer { min: 0, max: u32::MAX as i64 }, "0", "Another seed, another noise"),
@@ -37,12 +37,24 @@ pub static RENDER: Section = Section {
             "`\"sobol\"`",
             "Owen-scrambled Sobol' points (Burley 2020), jittered strata, or plain random numbers",
         ),
-        key("max_depth", Kind::Integer { min: 0, max: 64 }, "8", "Mirror and refraction events a path may have"),
+        key("max_depth", Kind::Integer { min: 0, max: 64 }, "8", "Scattering events a path may have: 0 shows what glows, 1 adds light scattered once. Mitsuba counts one more (its -1 is our 64)"),
         key(
             "min_weight",
             Kind::Number(Range::UNIT),
             "0.003",
-            "Branches that add less than this share to the pixel are cut",
+            "Branches that add less than this share to the pixel are cut (local, whitted)",
+        ),
+        key(
+            "rr_depth",
+            Kind::Integer { min: 0, max: 65 },
+            "5",
+            "Scattering events after which a dim path may be ended at random, the rest made brighter (Russian roulette); more than `max_depth`: never (path)",
+        ),
+        key(
+            "clamp",
+            Kind::Number(Range::NOT_NEGATIVE),
+            "0",
+            "Largest channel that one contribution of scattered light may add, against bright specks; darkens the picture, and says how often. 0: no limit (path)",
         ),
         key("shadows", Kind::Boolean, "true", "Trace shadow rays"),
         key(
@@ -138,6 +150,19 @@ pub static BACKGROUND: Section = Section {
             "Radiance straight down (-y), instead of `color`; between the two the gradient is linear in y",
         ),
         key("top", Kind::Color(Range::NOT_NEGATIVE), "0", "Radiance straight up (+y)"),
+        key(
+            "image",
+            Kind::Text,
+            "none",
+            "Equirectangular picture all around, HDR or EXR as a rule, relative to the scene file: its top row is +y, its centre +z, a quarter from the left +x",
+        ),
+        key("scale", Kind::Color(Range::NOT_NEGATIVE), "1", "Factor on `image`"),
+        key(
+            "rotate",
+            Kind::Special("four numbers [x, y, z, degrees]"),
+            "none",
+            "Turns `image` about an axis, counter-clockwise seen from its tip",
+        ),
     ],
 };
 
@@ -159,7 +184,7 @@ pub static MATERIAL: Section = Section {
         key("k_r", Kind::Number(Range::UNIT), "0", "Weight of a mirror branch added to the local model").only(LOCAL),
         key("specular_color", Kind::Color(Range::UNIT), "1", "O_s, the colour of highlights and of the `k_r` branch; of a dielectric the factor on refracted light").only(&["lambert", "phong", "blinn-phong", "cook-torrance", "dielectric"]),
         key("exponent", Kind::Number(Range::new(0.0, 1.0e6)), "32", "n of (V·R)^n or (N·H)^n").only(PHONGS),
-        key("normalisation", Kind::Choice(&["printed", "lafortune", "unit", "1982"]), "phong `\"printed\"`, cook-torrance `\"unit\"`", "phong: as `printed` in 1975, or `lafortune` (n+2)/2π. cook-torrance: `unit`, D's projected integral is 1, or `1982`, as that paper prints it, four times brighter").only(&["phong", "cook-torrance"]),
+        key("normalisation", Kind::Choice(&["printed", "lafortune", "unit", "1982"]), "phong `\"printed\"`, but `\"lafortune\"` under direct and path, cook-torrance `\"unit\"`", "phong: as `printed` in 1975, or `lafortune` (n+2)/2π. cook-torrance: `unit`, D's projected integral is 1, or `1982`, as that paper prints it, four times brighter").only(&["phong", "cook-torrance"]),
         key("m", Kind::Number(Range::new(1.0e-3, 2.0)), "0.2", "Rms slope of the Beckmann distribution, the material's roughness").only(&["cook-torrance"]),
         key("lobes", Kind::Special("one or two tables"), "none", "Weighted sum of Beckmann distributions instead of `m`, such as `[{ m = 0.4, weight = 0.4 }, { m = 0.2, weight = 0.6 }]`").only(&["cook-torrance"]),
         key("metal", Kind::Choice(&["Cu", "Au", "Ag", "Al", "Cr"]), "none", "Complex index of copper, gold, silver, aluminium or chromium instead of `eta` and `k`").only(&["cook-torrance", "mirror"]),
@@ -169,7 +194,7 @@ pub static MATERIAL: Section = Section {
         key("k_t", Kind::Number(Range::UNIT), "0", "Non-refractive transparency: the share of what lies behind").only(LOCAL),
         key("transparency_mode", Kind::Choice(&["interpolated", "filtered"]), "`\"interpolated\"`", "(1 - k_t) I_1 + k_t I_2, or I_1 + k_t O_t I_2").only(LOCAL),
         key("transparency_color", Kind::Color(Range::UNIT), "1", "O_t of filtered transparency").only(LOCAL),
-        key("emission", Kind::Color(Range::NOT_NEGATIVE), "0", "Radiance the surface adds by itself; it lights nothing else under these integrators").only(&["lambert", "phong", "blinn-phong", "cook-torrance"]),
+        key("emission", Kind::Color(Range::NOT_NEGATIVE), "0", "Radiance the surface adds by itself; it lights other things under `direct` and `path` only").only(&["lambert", "phong", "blinn-phong", "cook-torrance"]),
         key("casts_shadow", Kind::Boolean, "false with `k_t` > 0, else true", "Whether it stops shadow rays"),
     ],
 };

@@ -72,7 +72,7 @@ fn read_model(table: &Reader, name: &str) -> Result<Model> {
     let exponent = table.float("exponent")?.unwrap_or(32.0);
     let normalisation = read_normalisation(table, name)?;
     Ok(match name {
-        "phong" => Model::Phong { exponent, lafortune: normalisation == Some("lafortune") },
+        "phong" => Model::Phong { exponent, lafortune: normalisation.map(|word| word == "lafortune") },
         "blinn-phong" => Model::BlinnPhong { exponent },
         "cook-torrance" => Model::CookTorrance {
             lobes: read_lobes(table)?,

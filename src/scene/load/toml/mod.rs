@@ -42,9 +42,9 @@ pub fn scene_from_text(file: &Path, text: String, overrides: &[Override]) -> Res
     read_film(&root, &mut scene.film)?;
     let camera = read_camera(&root, &scene.film, None)?;
     scene.camera = root.required("camera", camera)?;
-    read_background(&root, &mut scene.background)?;
     scene.ambient = lights.ambient;
     let mut textures = texture::Textures::default();
+    scene.background = read_background(&root, &mut textures)?;
     let (materials, names) = material::read_materials(&root, &mut textures, &mut scene.warnings)?;
     (scene.materials, scene.textures) = (materials, textures.list);
     object::read_objects(&root, &names, &mut scene)?;
@@ -98,8 +98,7 @@ fn warn_dark(scene: &mut Scene) {
         .materials
         .iter()
         .any(|material| material.emission != Rgb::ZERO || matches!(material.model, crate::scene::Model::Emissive));
-    let surrounded = scene.background.bottom != Rgb::ZERO || scene.background.top != Rgb::ZERO;
-    if scene.lights.is_empty() && scene.ambient == Rgb::ZERO && !glows && !surrounded {
+    if scene.lights.is_empty() && scene.ambient == Rgb::ZERO && !glows && !scene.background.shines() {
         scene.warnings.push(format!("{}: the scene has no light: the picture will be black", scene.name));
     }
 }

@@ -44,17 +44,23 @@ fn read_step(table: &Reader) -> Result<Transform> {
         }
         transform = Transform(DAffine3::from_scale(DVec3::from_array(scale)));
     }
-    if let Some([x, y, z, degrees]) = table.numbers::<4>("rotate", Range::ANY)? {
-        let axis = Vec3::new(x as f32, y as f32, z as f32);
-        if axis.as_dvec3().length() < 1.0e-9 {
-            return Err(table.bad("rotate", "the axis of \"rotate\" must not have length 0"));
-        }
-        transform = transform.then(Transform::rotate(axis, degrees.to_radians()));
+    if let Some(rotation) = read_rotation(table)? {
+        transform = transform.then(rotation);
     }
     if let Some(offset) = table.vector("translate")? {
         transform = transform.then(Transform::translate(offset));
     }
     Ok(transform)
+}
+
+/// The key `rotate`.
+pub fn read_rotation(table: &Reader) -> Result<Option<Transform>> {
+    let Some([x, y, z, degrees]) = table.numbers::<4>("rotate", Range::ANY)? else { return Ok(None) };
+    let axis = Vec3::new(x as f32, y as f32, z as f32);
+    if axis.as_dvec3().length() < 1.0e-9 {
+        return Err(table.bad("rotate", "the axis of \"rotate\" must not have length 0"));
+    }
+    Ok(Some(Transform::rotate(axis, degrees.to_radians())))
 }
 
 fn read_matrix(table: &Reader, node: &Node) -> Result<Transform> {

@@ -3,9 +3,11 @@
 use super::document::Value;
 use super::format::{BACKGROUND, CAMERA, FILM, FILTER, RENDER};
 use super::keys::Range;
+use super::place::read_rotation;
 use super::reader::{Reader, Result, in_range};
+use super::texture::Textures;
 use crate::scene::{
-    Background, Camera, Film, Filter, Integrator, IntensityUnit, Projection, RenderSettings, Sampler, ToneMap,
+    Background, Camera, Environment, Film, Filter, Integrator, IntensityUnit, Projection, RenderSettings, Sampler, ToneMap,
 };
 use glam::Vec3;
 
@@ -19,7 +21,12 @@ pub struct LightSettings {
 /// Overwrites what `[render]` writes.
 pub fn read_render(root: &Reader, settings: &mut RenderSettings, light: &mut LightSettings) -> Result<()> {
     let Some(table) = root.table("render", &RENDER)? else { return Ok(()) };
-    let integrators = [("local", Integrator::Local), ("whitted", Integrator::Whitted)];
+    let integrators = [
+        ("local", Integrator::Local),
+        ("whitted", Integrator::Whitted),
+        ("direct", Integrator::Direct),
+        ("path", Integrator::Path),
+    ];
     let samplers =
         [("sobol", Sampler::Sobol), ("stratified", Sampler::Stratified), ("independent", Sampler::Independent)];
     let units = [("lecture", IntensityUnit::Lecture), ("radiometric", IntensityUnit::Radiometric)];
@@ -29,6 +36,10 @@ pub fn read_render(root: &Reader, settings: &mut RenderSettings, light: &mut Lig
     set(&mut settings.sampler, table.choice("sampler", &samplers)?);
     set(&mut settings.max_depth, table.integer("max_depth")?);
     set(&mut settings.min_weight, table.float("min_weight")?);
+    set(&mut settings.rr_depth, table.integer("rr_depth")?);
+    if let Some(clamp) = table.float("clamp")? {
+        settings.clamp = (clamp > 0.0).then_some(clamp);
+    }
     set(&mut settings.shadows, table.boolean("shadows")?);
     set(&mut light.unit, table.choice("intensity", &units)?);
     set(&mut light.ambient, table.color("ambient")?);
@@ -156,17 +167,23 @@ fn check_view(table: &Reader, camera: &Camera) -> Result<()> {
     Ok(())
 }
 
-/// Overwrites what `[background]` writes.
-pub fn read_background(root: &Reader, background: &mut Background) -> Result<()> {
-    let Some(table) = root.table("background", &BACKGROUND)? else { return Ok(()) };
-    table.exclusive("color", "bottom")?;
-    table.exclusive("color", "top")?;
-    if let Some(color) = table.color("color")? {
-        *background = Background { bottom: color, top: color };
+/// What `[background]` writes; what a gradient leaves out is black.
+pub fn read_background(root: &Reader, textures: &mut Textures) -> Result<Background> {
+    let Some(table) = root.table("background", &BACKGROUND)? else { return Ok(Background::BLACK) };
+    for (key, other) in [("color", "bottom"), ("color", "top"), ("image", "color"), ("image", "bottom"), ("image", "top")]
+    {
+        table.exclusive(key, other)?;
     }
-    set(&mut background.bottom, table.color("bottom")?);
-    set(&mut background.top, table.color("top")?);
-    Ok(())
+    let Some(texture) = textures.read_environment(&table)? else {
+        if let Some(key) = ["scale", "rotate"].into_iter().find(|key| table.has(key)) {
+            return Err(table.bad(key, format!("{key:?} of the background needs \"image\" beside it")));
+        }
+        let color = table.color("color")?.unwrap_or(Vec3::ZERO);
+        let (bottom, top) = (table.color("bottom")?.unwrap_or(color), table.color("top")?.unwrap_or(color));
+        return Ok(Background::Gradient { bottom, top });
+    };
+    let scale = table.color("scale")?.unwrap_or(Vec3::ONE);
+    Ok(Background::Image(Environment { texture, scale, to_world: read_rotation(&table)?.unwrap_or_default() }))
 }
 
 /// Overwrites `target` if there is a value.

@@ -28,6 +28,13 @@ impl Textures {
         Ok(Some(intern(&mut self.list, texture)))
     }
 
+    /// The picture that the key `image` of the background asks for: around the scene once, from pole to pole.
+    pub fn read_environment(&mut self, background: &Reader) -> Result<Option<TextureId>> {
+        let Some(file) = background.text("image")? else { return Ok(None) };
+        let texture = self.load(background, "image", file, ColorSpace::Srgb)?;
+        Ok(Some(intern(&mut self.list, Texture { wrap_v: Wrap::Clamp, ..texture })))
+    }
+
     fn read_table(&mut self, table: &Reader) -> Result<Texture> {
         let file = table.required("file", table.text("file")?)?;
         let space = table.choice("colorspace", &[("srgb", ColorSpace::Srgb), ("linear", ColorSpace::Linear)])?;

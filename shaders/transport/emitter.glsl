@@ -1,0 +1,81 @@
+// Light from things that have a size: which to sample, how, and how likely a ray that met one was to be such a sample.
+#ifndef TRANSPORT_EMITTER_GLSL
+#define TRANSPORT_EMITTER_GLSL
+
+#include "layout/mod.glsl"
+#include "shading/environment.glsl"
+#include "shading/light.glsl"
+#include "shading/material.glsl"
+#include "shading/math.glsl"
+#include "shading/spectrum.glsl"
+#include "shading/warp.glsl"
+#include "trace/ray.glsl"
+#include "trace/surface.glsl"
+#include "transport/area_light.glsl"
+#include "transport/textured.glsl"
+
+// The emitter that two random numbers choose, 0..1 excluding 1, by its probability: Walker's alias method (Vose 1991,
+// "A Linear Algorithm For Generating Random Numbers With a Given Distribution"). There is at least one.
+uint choose_emitter(vec2 u) {
+    uint count = header.emitter_count;
+    uint index = uint(u.x * float(count));
+    uint place = index < count ? index : count - 1u;
+    uint entry = header.emitter_table + 2u * place;
+    return u.y < load_table(entry) ? place : uint(load_table(entry + 1u));
+}
+
+// Radiance of the point of a textured emitter that `lit` was drawn to from `position` with `u`.
+Spectrum textured_radiance(Emitter emitter, vec3 position, vec2 u, LightSample lit) {
+    vec2 b = square_to_uniform_triangle(u);
+    Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0u, 0u);
+    Hit hit = Hit(lit.distance, b.x, b.y, emitter.instance, emitter.primitive, 0u, 0u, 0u);
+    return spectrum_from_rgb(emission_material(material_at(surface_at(ray, hit))));
+}
+
+// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1.
+LightSample sample_emitter(Emitter emitter, Surface surface, vec2 u) {
+    vec3 position = surface.position;
+    if (emitter.kind == EMITTER_ENVIRONMENT) {
+        EnvironmentSample seen = sample_environment(u);
+        float pdf = emitter.density * seen.pdf_solid_angle;
+        Spectrum radiance = spectrum_from_rgb(seen.radiance) * rcp(pdf);
+        return LightSample(seen.wi, T_INFINITE, radiance, pdf);
+    }
+    if (emitter.kind == EMITTER_LIGHT) {
+        LightSample lit = sample_light(load_light(emitter.instance), position);
+        lit.radiance *= rcp(emitter.density);
+        return lit;
+    }
+    LightSample lit = no_light();
+    if (emitter.kind == EMITTER_SPHERE) {
+        lit = sample_sphere_light(emitter, load_instance(emitter.instance), position, u);
+    } else if (emitter.instance != surface.instance || emitter.primitive != surface.primitive) {
+        lit = sample_triangle_light(emitter, position, u);
+    }
+    if ((emitter.flags & EMITTER_TEXTURED) != 0u && lit.pdf_solid_angle > 0.0) {
+        lit.radiance = textured_radiance(emitter, position, u, lit) * rcp(lit.pdf_solid_angle);
+    }
+    return lit;
+}
+
+// Whether shadow rays are traced for an emitter.
+bool casts_shadow(Emitter emitter) {
+    return emitter.kind != EMITTER_LIGHT || load_light(emitter.instance).casts_shadow != 0u;
+}
+
+// Density per solid angle with which `sample_emitter`, its choice included, would have drawn the direction of a ray that
+// left `origin` and met a glowing surface at `t`.
+float pdf_emitter(vec3 origin, vec3 direction, float t, Surface surface) {
+    Instance instance = load_instance(surface.instance);
+    // Without textures: what bake made the choice by.
+    float luminance = spectrum_luminance(spectrum_from_rgb(emission_material(load_material(surface.material))));
+    float density = instance.light_density * luminance;
+    if (surface.kind == KIND_SPHERE) {
+        vec3 along = transform_vector(instance.to_object, direction);
+        vec3 start = transform_point(instance.to_object, origin);
+        return (density * sphere_pdf(start, along * t)) * solid_angle_ratio(instance, along);
+    }
+    return area_to_solid_angle(density, t * t, abs(dot3(surface.normal_geometric, direction)));
+}
+
+#endif

@@ -1,0 +1,171 @@
+// Path tracing with next-event estimation and multiple importance sampling.
+//
+// Source: Kajiya 1986, "The Rendering Equation"; Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation",
+// chapters 8 to 10. At each surface one emitter is sampled and one direction of the surface; what both could have found is
+// weighted by the power heuristic. A path goes on as one ray. `direct` is the case of one scattering event.
+//
+// Panes (k_t, opacity) are a choice at random between the surface and what lies behind; passing is no scattering event.
+// Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit.
+#ifndef TRANSPORT_PATH_GLSL
+#define TRANSPORT_PATH_GLSL
+
+#include "shading/bsdf.glsl"
+#include "shading/environment.glsl"
+#include "shading/frame.glsl"
+#include "shading/material.glsl"
+#include "shading/math.glsl"
+#include "shading/sampling.glsl"
+#include "shading/spectrum.glsl"
+#include "trace/spawn.glsl"
+#include "trace/surface.glsl"
+#include "transport/emitter.glsl"
+#include "transport/local.glsl"
+#include "transport/mod.glsl"
+#include "transport/weight.glsl"
+
+// A contribution of light that has been scattered, within the scene's limit; how often that bites is counted.
+Spectrum limited(uint depth, Spectrum value) {
+    float largest = spectrum_max(value);
+    if (header.clamp <= 0.0 || depth == 0u || largest <= header.clamp) {
+        return value;
+    }
+    count_limited();
+    return value * div(header.clamp, largest);
+}
+
+// Adds what a ray that leaves the scene sees.
+void shade_escape(PathState path, SampleKey key) {
+    Spectrum radiance = background(path.ray.direction);
+    if (spectrum_max(radiance) <= 0.0) {
+        return;
+    }
+    float weight = 1.0;
+    if (path.pdf > 0.0) {
+        float sampled = header.environment_density * pdf_environment(path.ray.direction);
+        weight = power_heuristic(path.pdf, sampled);
+    }
+    Spectrum seen = limited(path.depth, path.throughput * (radiance * weight));
+    vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
+    add_contribution(header.film_scale, path.slot, contribution, dither_hash(key, DITHER_BACKGROUND));
+}
+
+// Light of one emitter, chosen at random, that the surface sends on towards `wo`; its shadow ray is appended.
+void shade_emitter(PathState path, SampleKey key, Surface surface, Material material, Frame frame, vec3 wo) {
+    uint chosen = 0u;
+    if (header.emitter_count > 1u) {
+        chosen = choose_emitter(sample_2d(key, DIMENSION_LIGHT_CHOICE));
+    }
+    Emitter emitter = load_emitter(chosen);
+    vec2 u = vec2(0.0);
+    if (emitter.kind != EMITTER_LIGHT) {
+        u = sample_2d(key, DIMENSION_LIGHT);
+    }
+    LightSample lit = sample_emitter(emitter, surface, u);
+    vec3 wo_local = to_local(frame, wo);
+    vec3 wi_local = to_local(frame, lit.wi);
+    if (spectrum_max(lit.radiance) <= 0.0 || !consistent(surface, wo, lit.wi, wo_local, wi_local)) {
+        return;
+    }
+    Spectrum reflected = path.throughput * eval_material(material, wo_local, wi_local) * lit.radiance;
+    if (spectrum_max(reflected) <= 0.0) {
+        return;
+    }
+    float weight = 1.0;
+    if (lit.pdf_solid_angle > 0.0) {
+        weight = power_heuristic(lit.pdf_solid_angle, pdf_material(material, wo_local, wi_local));
+    }
+    Spectrum seen = limited(path.depth + 1u, reflected * weight);
+    vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
+    uint dither = dither_hash(key, DITHER_LIGHT);
+    if (casts_shadow(emitter)) {
+        Ray ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
+        push_shadow(ShadowRay(ray, contribution, path.slot, dither, 0u, 0u));
+    } else {
+        add_contribution(header.film_scale, path.slot, contribution, dither);
+    }
+}
+
+// Lets the path go on into a direction of the surface.
+void scatter(PathState path, SampleKey key, Surface surface, Material material, Frame frame, vec3 wo) {
+    vec3 wo_local = to_local(frame, wo);
+    float u_lobe = sample_1d(key, DIMENSION_LOBE);
+    BsdfSample bsdf = sample_material(material, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
+    vec3 wi = to_world(frame, bsdf.wi);
+    if (bsdf.pdf <= 0.0 || !consistent(surface, wo, wi, wo_local, bsdf.wi)) {
+        return;
+    }
+    PathState next = path;
+    next.throughput = spectrum_flush(path.throughput * bsdf.weight);
+    next.depth = path.depth + 1u;
+    next.path_id = hash_combine(path.path_id, LOBE_SCATTER);
+    next.coverage = 0.0;
+    next.pdf = (bsdf.flags & SAMPLE_DELTA) != 0u ? 0.0 : bsdf.pdf;
+    if ((bsdf.flags & SAMPLE_TRANSMIT) != 0u) {
+        next.eta = path.eta * bsdf.eta;
+        next.absorption = bsdf.wi.z < 0.0 ? material.absorption : vec3(0.0);
+    }
+    if (next.depth >= header.rr_depth) {
+        float survives = survival(next.throughput, next.eta);
+        if (sample_1d(key, DIMENSION_ROULETTE) >= survives) {
+            return;
+        }
+        next.throughput *= rcp(survives);
+    }
+    if (spectrum_max(next.throughput) <= 0.0) {
+        return;
+    }
+    next.ray = spawn_ray(surface, wi, T_INFINITE);
+    push_path(next);
+}
+
+// Shades one hit: adds what glows, samples an emitter, and lets the path go on.
+// `key`: of the path.
+void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Material material) {
+    PathState path = incoming;
+    vec3 direction = path.ray.direction;
+    if (material.k_t > 0.0) {
+        float own = own_weight(material);
+        vec4 tint = vec4(material.k_t);
+        if ((material.flags & MATERIAL_FILTERED) != 0u) {
+            tint *= spectrum_from_rgb(material.transmit_color);
+        }
+        // Each side as often as it is bright.
+        float share = spectrum_max(tint);
+        float through = div(share, own + share);
+        if (sample_1d(key, DIMENSION_PANE) < through) {
+            path.throughput *= tint * rcp(through);
+            path.coverage *= material.k_t * rcp(through);
+            path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
+            path.pdf = 0.0;
+            path.ray = spawn_through(surface, direction, path.ray.t_max);
+            push_path(path);
+            return;
+        }
+        path.throughput *= own * rcp(1.0 - through);
+        path.coverage *= (1.0 - material.k_t) * rcp(1.0 - through);
+    }
+
+    vec3 wo = -direction;
+    Spectrum own_light = spectrum_from_rgb(emitted(surface, material, wo));
+    bool glows = spectrum_max(own_light) > 0.0;
+    if (glows || path.coverage != 0.0) {
+        float weight = 1.0;
+        if (glows && path.pdf > 0.0) {
+            float sampled = pdf_emitter(path.ray.origin, direction, hit.t, surface);
+            weight = power_heuristic(path.pdf, sampled);
+        }
+        Spectrum seen = limited(path.depth, path.throughput * (own_light * weight));
+        vec4 contribution = vec4(seen.x, seen.y, seen.z, path.coverage);
+        add_contribution(header.film_scale, path.slot, contribution, dither_hash(key, DITHER_SURFACE));
+    }
+    if (path.depth >= header.max_depth || is_hidden_back(surface, material, wo)) {
+        return;
+    }
+    Frame frame = shading_frame(surface, material, wo);
+    if (header.emitter_count > 0u && !is_delta(material)) {
+        shade_emitter(path, key, surface, material, frame, wo);
+    }
+    scatter(path, key, surface, material, frame, wo);
+}
+
+#endif

@@ -1,0 +1,201 @@
+//! Path tracing with next-event estimation and multiple importance sampling.
+//!
+//! Source: Kajiya 1986, "The Rendering Equation"; Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation",
+//! chapters 8 to 10. At each surface one emitter is sampled and one direction of the surface; what both could have found is
+//! weighted by the power heuristic. A path goes on as one ray. `direct` is the case of one scattering event.
+//!
+//! Panes (k_t, opacity) are a choice at random between the surface and what lies behind; passing is no scattering event.
+//! Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit.
+
+use super::emitter::{casts_shadow, choose_emitter, pdf_emitter, sample_emitter};
+use super::local::{SHADOW_END, emitted, is_hidden_back, own_weight, shading_frame};
+use super::weight::{consistent, power_heuristic, survival};
+use super::{
+    DIMENSION_BSDF, DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, DIMENSION_LOBE, DIMENSION_PANE, DIMENSION_ROULETTE,
+    DITHER_BACKGROUND, DITHER_LIGHT, DITHER_SURFACE, LOBE_SCATTER, LOBE_THROUGH, Queues, add_contribution,
+    count_limited, push_path, push_shadow,
+};
+use crate::layout::{
+    EMITTER_LIGHT, Hit, MATERIAL_FILTERED, Material, PathState, SceneView, ShadowRay, T_INFINITE, load_emitter,
+};
+use crate::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
+use crate::shading::environment::{background, pdf_environment};
+use crate::shading::frame::{Frame, to_local, to_world};
+use crate::shading::material::{eval_material, is_delta, pdf_material, sample_material};
+use crate::shading::math::{div, rcp};
+use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, sample_1d, sample_2d};
+use crate::shading::spectrum::{Spectrum, spectrum_flush, spectrum_from_rgb, spectrum_max};
+use crate::trace::spawn::{spawn_ray, spawn_through};
+use crate::trace::surface::Surface;
+use glam::{Vec2, Vec3, Vec4};
+
+/// A contribution of light that has been scattered, within the scene's limit; how often that bites is counted.
+pub fn limited(scene: &SceneView, depth: u32, value: Spectrum, queues: &mut Queues) -> Spectrum {
+    let largest = spectrum_max(value);
+    if scene.header.clamp <= 0.0 || depth == 0 || largest <= scene.header.clamp {
+        return value;
+    }
+    count_limited(queues);
+    value * div(scene.header.clamp, largest)
+}
+
+/// Adds what a ray that leaves the scene sees.
+pub fn shade_escape(scene: &SceneView, path: &PathState, key: SampleKey, queues: &mut Queues) {
+    let radiance = background(scene, path.ray.direction);
+    if spectrum_max(radiance) <= 0.0 {
+        return;
+    }
+    let mut weight = 1.0;
+    if path.pdf > 0.0 {
+        let sampled = scene.header.environment_density * pdf_environment(scene, path.ray.direction);
+        weight = power_heuristic(path.pdf, sampled);
+    }
+    let seen = limited(scene, path.depth, path.throughput * (radiance * weight), queues);
+    let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
+    add_contribution(queues, scene.header.film_scale, path.slot, contribution, dither_hash(key, DITHER_BACKGROUND));
+}
+
+/// Light of one emitter, chosen at random, that the surface sends on towards `wo`; its shadow ray is appended.
+fn shade_emitter(
+    scene: &SceneView,
+    path: &PathState,
+    key: SampleKey,
+    surface: &Surface,
+    material: &Material,
+    frame: Frame,
+    wo: Vec3,
+    queues: &mut Queues,
+) {
+    let mut chosen = 0;
+    if scene.header.emitter_count > 1 {
+        chosen = choose_emitter(scene, sample_2d(key, DIMENSION_LIGHT_CHOICE));
+    }
+    let emitter = load_emitter(scene, chosen);
+    let mut u = Vec2::ZERO;
+    if emitter.kind != EMITTER_LIGHT {
+        u = sample_2d(key, DIMENSION_LIGHT);
+    }
+    let lit = sample_emitter(scene, &emitter, surface, u);
+    let wo_local = to_local(frame, wo);
+    let wi_local = to_local(frame, lit.wi);
+    if spectrum_max(lit.radiance) <= 0.0 || !consistent(surface, wo, lit.wi, wo_local, wi_local) {
+        return;
+    }
+    let reflected = path.throughput * eval_material(scene, material, wo_local, wi_local) * lit.radiance;
+    if spectrum_max(reflected) <= 0.0 {
+        return;
+    }
+    let mut weight = 1.0;
+    if lit.pdf_solid_angle > 0.0 {
+        weight = power_heuristic(lit.pdf_solid_angle, pdf_material(scene, material, wo_local, wi_local));
+    }
+    let seen = limited(scene, path.depth + 1, reflected * weight, queues);
+    let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
+    let dither = dither_hash(key, DITHER_LIGHT);
+    if casts_shadow(scene, &emitter) {
+        let ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
+        push_shadow(queues, ShadowRay { ray, contribution, slot: path.slot, dither, _pad0: 0, _pad1: 0 });
+    } else {
+        add_contribution(queues, scene.header.film_scale, path.slot, contribution, dither);
+    }
+}
+
+/// Lets the path go on into a direction of the surface.
+fn scatter(
+    scene: &SceneView,
+    path: &PathState,
+    key: SampleKey,
+    surface: &Surface,
+    material: &Material,
+    frame: Frame,
+    wo: Vec3,
+    queues: &mut Queues,
+) {
+    let wo_local = to_local(frame, wo);
+    let u_lobe = sample_1d(key, DIMENSION_LOBE);
+    let bsdf = sample_material(scene, material, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
+    let wi = to_world(frame, bsdf.wi);
+    if bsdf.pdf <= 0.0 || !consistent(surface, wo, wi, wo_local, bsdf.wi) {
+        return;
+    }
+    let mut next = *path;
+    next.throughput = spectrum_flush(path.throughput * bsdf.weight);
+    next.depth = path.depth + 1;
+    next.path_id = hash_combine(path.path_id, LOBE_SCATTER);
+    next.coverage = 0.0;
+    next.pdf = if (bsdf.flags & SAMPLE_DELTA) != 0 { 0.0 } else { bsdf.pdf };
+    if (bsdf.flags & SAMPLE_TRANSMIT) != 0 {
+        next.eta = path.eta * bsdf.eta;
+        next.absorption = if bsdf.wi.z < 0.0 { material.absorption } else { Vec3::ZERO };
+    }
+    if next.depth >= scene.header.rr_depth {
+        let survives = survival(next.throughput, next.eta);
+        if sample_1d(key, DIMENSION_ROULETTE) >= survives {
+            return;
+        }
+        next.throughput *= rcp(survives);
+    }
+    if spectrum_max(next.throughput) <= 0.0 {
+        return;
+    }
+    next.ray = spawn_ray(surface, wi, T_INFINITE);
+    push_path(queues, next);
+}
+
+/// Shades one hit: adds what glows, samples an emitter, and lets the path go on.
+/// `key`: of the path.
+pub fn shade_path(
+    scene: &SceneView,
+    incoming: &PathState,
+    key: SampleKey,
+    hit: &Hit,
+    surface: &Surface,
+    material: &Material,
+    queues: &mut Queues,
+) {
+    let mut path = *incoming;
+    let direction = path.ray.direction;
+    if material.k_t > 0.0 {
+        let own = own_weight(material);
+        let mut tint = Vec4::splat(material.k_t);
+        if (material.flags & MATERIAL_FILTERED) != 0 {
+            tint *= spectrum_from_rgb(material.transmit_color);
+        }
+        // Each side as often as it is bright.
+        let share = spectrum_max(tint);
+        let through = div(share, own + share);
+        if sample_1d(key, DIMENSION_PANE) < through {
+            path.throughput *= tint * rcp(through);
+            path.coverage *= material.k_t * rcp(through);
+            path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
+            path.pdf = 0.0;
+            path.ray = spawn_through(surface, direction, path.ray.t_max);
+            push_path(queues, path);
+            return;
+        }
+        path.throughput *= own * rcp(1.0 - through);
+        path.coverage *= (1.0 - material.k_t) * rcp(1.0 - through);
+    }
+
+    let wo = -direction;
+    let own_light = spectrum_from_rgb(emitted(surface, material, wo));
+    let glows = spectrum_max(own_light) > 0.0;
+    if glows || path.coverage != 0.0 {
+        let mut weight = 1.0;
+        if glows && path.pdf > 0.0 {
+            let sampled = pdf_emitter(scene, path.ray.origin, direction, hit.t, surface);
+            weight = power_heuristic(path.pdf, sampled);
+        }
+        let seen = limited(scene, path.depth, path.throughput * (own_light * weight), queues);
+        let contribution = Vec4::new(seen.x, seen.y, seen.z, path.coverage);
+        add_contribution(queues, scene.header.film_scale, path.slot, contribution, dither_hash(key, DITHER_SURFACE));
+    }
+    if path.depth >= scene.header.max_depth || is_hidden_back(surface, material, wo) {
+        return;
+    }
+    let frame = shading_frame(scene, surface, material, wo);
+    if scene.header.emitter_count > 0 && !is_delta(material) {
+        shade_emitter(scene, &path, key, surface, material, frame, wo, queues);
+    }
+    scatter(scene, &path, key, surface, material, frame, wo, queues);
+}
