@@ -342,6 +342,9 @@ fn depths_count_surfaces_instead_of_edges() {
     };
     assert_eq!(["0", "1", "2", "6", "-1", "", "1000"].map(depth), [0, 0, 1, 5, 64, 64, 64]);
     let wrapped = read(&format!("{LEAST}<integrator type=\"moment\"><integrator type=\"path\"><integer name=\"max_depth\" value=\"3\"/></integrator></integrator>"));
+    assert_eq!((wrapped.settings.integrator, wrapped.settings.rr_depth), (Integrator::Path, 5));
+    let direct = read(&format!("{LEAST}<integrator type=\"direct\"/>")).settings;
+    assert_eq!((direct.integrator, direct.max_depth), (Integrator::Direct, 1));
     assert_eq!((wrapped.settings.max_depth, wrapped.warnings.iter().filter(|w| w.contains("moment")).count()), (2, 0));
 }
 

@@ -4,7 +4,9 @@ use super::Loader;
 use super::document::{Node, Result};
 use super::object::{Child, Object};
 use super::spectrum::Role;
-use crate::scene::{Attenuation, Background, IntensityUnit, Light, LightKind, Rgb};
+use crate::scene::load::image::ColorSpace;
+use crate::scene::load::texture_files::intern;
+use crate::scene::{Attenuation, Background, Environment, IntensityUnit, Light, LightKind, Rgb, Wrap};
 use glam::{DVec3, Vec3};
 
 impl Loader<'_> {
@@ -26,10 +28,25 @@ impl Loader<'_> {
             "area" => Ok(()),
             "constant" => {
                 let radiance = object.color("radiance", Role::Emission)?.unwrap_or(Rgb::ONE);
-                self.scene.background = Background { bottom: radiance, top: radiance };
-                self.environment(&object)
+                self.scene.background = Background::flat(radiance);
+                self.claim_surroundings(&object)
             }
-            "envmap" => Err(self.document.bad(node, "the emitter \"envmap\" is not supported")),
+            "envmap" => {
+                self.claim_surroundings(&object)?;
+                let Some(file) = object.property("filename") else { return object.required("filename", None) };
+                let mut texture = self.textures.picture(&self.document.find_file(file, "value")?, ColorSpace::Srgb)?;
+                // The rows of Mitsuba's pictures lie from pole to pole, ours have their middles half a row inside.
+                let rows = texture.height as f32;
+                (texture.scale[1], texture.offset[1]) = ((rows - 1.0) / rows, 0.5 / rows);
+                texture.wrap_v = Wrap::Clamp;
+                let scale = object.float_in("scale", 0.0, 1e12)?.unwrap_or(1.0);
+                self.scene.background = Background::Image(Environment {
+                    texture: intern(&mut self.scene.textures, texture),
+                    scale: Rgb::splat(scale as f32),
+                    to_world: object.transform("to_world")?,
+                });
+                Ok(())
+            }
             "point" => {
                 let position = match object.vector("position")? {
                     Some(_) if object.has("to_world") => {
@@ -89,7 +106,7 @@ impl Loader<'_> {
     }
 
     /// There is one environment.
-    fn environment(&mut self, object: &Object) -> Result<()> {
+    fn claim_surroundings(&mut self, object: &Object) -> Result<()> {
         match self.environment.replace(object.node) {
             None => Ok(()),
             Some(first) => {

@@ -35,8 +35,11 @@ fn read(document: &Document, node: Node, scene: &mut Scene, nesting: u32) -> Res
                 Some(edges) if edges >= 0 => (edges - 1).max(0).min(i64::from(DEPTH_MAX)) as u32,
                 _ => DEPTH_MAX,
             };
-            scene.settings.integrator = Integrator::Whitted;
+            scene.settings.integrator = if kind == "direct" { Integrator::Direct } else { Integrator::Path };
             scene.settings.max_depth = depth;
+            if kind != "direct" && let Some(rr_depth) = object.integer("rr_depth", 0, i64::from(i32::MAX))? {
+                scene.settings.rr_depth = rr_depth.min(i64::from(DEPTH_MAX) + 1) as u32;
+            }
             if object.boolean("hide_emitters")? == Some(true) {
                 let location = document.location_of(node);
                 scene.warnings.push(format!("{location}: \"hide_emitters\" has no effect; --transparent leaves the background out"));

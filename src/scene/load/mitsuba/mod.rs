@@ -52,6 +52,7 @@ struct Loader<'a> {
     /// By element, and whether a `twosided` is around it.
     materials: HashMap<(Node, bool), MaterialId>,
     meshes: HashMap<MeshKey, MeshId>,
+    /// The emitter around the scene.
     environment: Option<Node>,
 }
 
@@ -106,7 +107,7 @@ impl Loader<'_> {
     fn finish(self) -> Result<Scene, SceneError> {
         let mut scene = self.scene;
         let glows = scene.materials.iter().any(|material| material.emission != Rgb::ZERO);
-        if scene.lights.is_empty() && !glows && self.environment.is_none() {
+        if scene.lights.is_empty() && !glows && !scene.background.shines() {
             scene.warnings.push(format!("{}: the scene has no light: the picture will be black", scene.name));
         }
         Ok(scene)

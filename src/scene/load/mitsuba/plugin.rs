@@ -126,7 +126,7 @@ const SENSOR_PARTS: &[&str] = &["film", "sampler"];
 const SAMPLER: &[Property] = &[p("sample_count", Integer, "4"), p("seed", Integer, "0"), ignored("jitter", Boolean)];
 
 const PATH: &[Property] =
-    &[p("max_depth", Integer, "-1"), ignored("rr_depth", Integer), p("hide_emitters", Boolean, "false")];
+    &[p("max_depth", Integer, "-1"), p("rr_depth", Integer, "5"), p("hide_emitters", Boolean, "false")];
 
 const MICROFACETS: &[Property] = &[
     p("distribution", Text, "beckmann"),

@@ -9,6 +9,7 @@ use super::spectrum::Role;
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::{TextureFiles, intern};
 use crate::scene::{Scene, Texture, TextureData, TextureId, Wrap};
+use std::path::Path;
 use std::sync::Arc;
 
 /// What varies over a surface.
@@ -44,6 +45,11 @@ impl Textures {
         Ok(Varying::Texture(intern(&mut scene.textures, texture)))
     }
 
+    /// A picture as it lies in its file.
+    pub fn picture(&mut self, path: &Path, space: ColorSpace) -> Result<Texture> {
+        self.files.load(path, space)
+    }
+
     /// The texture with its luminance in every channel: what a number takes from a coloured picture.
     pub fn grey(&mut self, id: TextureId, scene: &mut Scene) -> TextureId {
         let texture = &scene.textures[id.0 as usize];
@@ -71,7 +77,7 @@ impl Textures {
         let Some(node) = object.property("filename") else { return object.required("filename", None) };
         let raw = object.boolean("raw")?.unwrap_or(false);
         let path = object.document.find_file(node, "value")?;
-        let mut texture = self.files.load(&path, if raw { ColorSpace::Linear } else { ColorSpace::Srgb })?;
+        let mut texture = self.picture(&path, if raw { ColorSpace::Linear } else { ColorSpace::Srgb })?;
         texture.bilinear = object.choice("filter_type", &[("bilinear", true), ("nearest", false)])?.unwrap_or(true);
         let modes = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
         let wrap = object.choice("wrap_mode", &modes)?.unwrap_or(Wrap::Repeat);
