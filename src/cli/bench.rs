@@ -202,6 +202,7 @@ impl BenchArgs {
         let name = path.display().to_string();
         let start = Instant::now();
         let flags = SceneFlags {
+            define: Vec::new(),
             size: None,
             spp: Some(1),
             seed: self.seed,

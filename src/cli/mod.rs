@@ -11,6 +11,7 @@ pub mod parity;
 mod progress;
 pub mod render;
 mod setup;
+pub mod verify;
 
 use anyhow::Context;
 use clap::{Parser, Subcommand};
@@ -52,6 +53,8 @@ enum Command {
     Bench(bench::BenchArgs),
     /// Compare two pictures: ULP, MSE, FLIP.
     Compare(compare::CompareArgs),
+    /// Prove that pictures are right: compare them with those of Mitsuba 3.
+    Verify(verify::VerifyArgs),
     /// List what can be used, and why the rest cannot.
     Devices(devices::DevicesArgs),
     /// Print a completion script for a shell.
@@ -90,6 +93,7 @@ pub fn main() -> ExitCode {
         Command::Parity(args) => parity::run(args, cli.quiet),
         Command::Bench(args) => bench::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Verify(args) => verify::run(args),
         Command::Devices(args) => devices::run(args),
         Command::Completions { shell } => {
             // Into memory first: the generator panics where it cannot write.

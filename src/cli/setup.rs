@@ -110,6 +110,24 @@ pub struct SceneFlags {
     /// Change any key of the scene file, as in `material.copper.color=[1,0,0]`; may be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// Give a parameter of a Mitsuba scene a value, as in `spp=64`; may be repeated.
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE")]
+    pub define: Vec<Define>,
+}
+
+/// `NAME=VALUE`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Define(String, String);
+
+impl FromStr for Define {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((name, value)) if !name.is_empty() => Ok(Self(name.to_owned(), value.to_owned())),
+            _ => Err("expected NAME=VALUE, as in spp=64".to_owned()),
+        }
+    }
 }
 
 impl SceneFlags {
@@ -122,7 +140,8 @@ impl SceneFlags {
             .chain(&size)
             .map(|text| text.parse().map_err(|error| Usage(format!("--set {text}: {error}"))))
             .collect::<Result<Vec<load::Override>, _>>()?;
-        let mut scene = load::load(path, &overrides)?;
+        let defines: Vec<(String, String)> = self.define.iter().map(|d| (d.0.clone(), d.1.clone())).collect();
+        let mut scene = load::load_with(path, &overrides, &defines)?;
         let settings = &mut scene.settings;
         settings.samples = self.spp.unwrap_or(settings.samples);
         settings.seed = self.seed.unwrap_or(settings.seed);

@@ -22,6 +22,7 @@ mod texture;
 
 pub(super) use keys::LARGEST;
 pub use overrides::Override;
+pub(super) use reader::nearest;
 
 use super::staging::bare_scene;
 use crate::scene::{IntensityUnit, Rgb, Scene, SceneError};
