@@ -293,4 +293,3 @@ pub fn casts_shadow(material: &scene::Material) -> bool {
     };
     material.casts_shadow.unwrap_or(!pane)
 }
-
