@@ -6,12 +6,14 @@ mod chi_square;
 mod common;
 
 use chi_square::{Random, direction, integrate_hemisphere, test_sampler};
+use glam::Vec3;
 use gonio::bake::{SceneData, bake};
-use gonio::layout::MODEL_BLEND;
+use gonio::layout::{Hit, MODEL_BLEND, Ray};
 use gonio::scene::load::load;
 use gonio::scene::*;
 use gonio::shading::material::{eval_material, pdf_material, sample_material};
 use gonio::shading::sampling::SampleKey;
+use gonio::trace::surface::{Surface, surface_at};
 use gonio::transport::leaf::leaf_material;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 use std::fs;
@@ -141,12 +143,18 @@ fn paths_meet_the_materials_of_a_blend_by_their_shares() {
     assert_eq!(data.materials[4].model, MODEL_BLEND);
     let mut counts = [0u32; 3];
     let samples = 40_000;
+    let ray = Ray { origin: Vec3::new(0.0, 0.0, 5.0), direction: Vec3::NEG_Z, ..Ray::default() };
+    let hit = Hit { t: 4.0, ..Hit::default() };
+    let here = surface_at(&data.view(), &ray, &hit);
+    let color_of = |material: u32, key: SampleKey| {
+        let mut surface = Surface { material, ..here };
+        leaf_material(&data.view(), ray.direction, &hit, key, &mut surface).color.x
+    };
     for sample_index in 0..samples {
         let key = SampleKey { seed: 3, pixel: 7, sample_index, path_id: 0, sampling: 2, strata: 1 };
-        let leaf = leaf_material(&data.view(), 4, key);
-        let color = data.materials[leaf as usize].color.x;
+        let color = color_of(4, key);
         counts[[0.1, 0.2, 0.3].iter().position(|c| *c == color).expect("a leaf")] += 1;
-        assert_eq!(leaf_material(&data.view(), 2, key), 2);
+        assert_eq!(color_of(2, key), 0.3);
     }
     for (count, share) in counts.into_iter().zip([0.25, 0.75 * 0.4, 0.75 * 0.6]) {
         // Four standard deviations of a share near a half: .01.
