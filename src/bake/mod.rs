@@ -11,6 +11,7 @@ mod instance;
 mod material;
 mod scene;
 pub mod srgb;
+mod wide;
 
 pub use data::{BakeTimes, HeapPiece, SceneData};
 pub use scene::bake;
