@@ -334,6 +334,11 @@ fn shapes_that_have_no_surface_are_refused() {
             "shape = \"teapot\"\nsegments = 500",
             "a.toml:5:12: \"segments\" of this shape must be an integer from 1 to 128, found 500",
         ),
+        (
+            "shape = \"terrain\"\ntriangles = 1",
+            "a.toml:5:13: \"triangles\" of this shape must be an integer from 2 to 33554432, found 1",
+        ),
+        ("shape = \"sphereflake\"\nlevel = 8", "a.toml:5:9: \"level\" must be an integer from 0 to 7, found 8"),
         ("shape = \"mesh\"", "a.toml:3:1: [[object]] needs the key \"file\""),
         (
             "shape = \"mesh\"\nfile = \"a.toml\"",

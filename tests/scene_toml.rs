@@ -314,6 +314,20 @@ fn every_shape_has_the_size_that_its_keys_say() {
 }
 
 #[test]
+fn shapes_of_any_size_have_about_as_many_triangles_as_they_say() {
+    let shape = |keys: &str| read(&format!("[camera]\neye = [0, 0, 9]\n[[object]]\n{keys}\n"), &[]);
+    assert_eq!(shape("shape = \"terrain\"\ntriangles = 800").meshes[0].triangles.len(), 800);
+    assert_eq!(shape("shape = \"hairball\"\ntriangles = 960").meshes[0].triangles.len(), 960);
+    let flake = shape("shape = \"sphereflake\"\nlevel = 1\nscale = 3\ntranslate = [1, 0, 0]");
+    assert_eq!((flake.objects.len(), flake.meshes.len()), (10, 0), "spheres are exact");
+    assert!(flake.objects.iter().all(|object| object.geometry == Geometry::Sphere));
+    assert!(close(placed(&flake.objects[0], [1.0, 0.0, 0.0]), [4.0, 0.0, 0.0]));
+    assert!(close(placed(&flake.objects[1], [0.0, 0.0, 0.0]), [5.0, 0.0, 0.0]), "it touches the first along x");
+    let field = shape("shape = \"teapots\"\ntriangles = 20000");
+    assert_eq!((field.objects.len(), field.meshes.len()), (5, 1), "one teapot, placed five times");
+}
+
+#[test]
 fn a_mesh_file_brings_its_materials_and_is_read_once() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("writable");

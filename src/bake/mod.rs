@@ -19,6 +19,7 @@ mod model;
 mod scene;
 pub mod srgb;
 mod texture;
+mod wide;
 
 pub use data::{BakeTimes, HeapPiece, SceneData};
 pub use scene::bake;

@@ -1,6 +1,6 @@
 //! What render, parity and others share: from flags to a baked scene and a renderer.
 
-use super::{Usage, exact};
+use super::{Usage, exact, progress};
 use crate::bake::{SceneData, bake};
 use crate::film::{Film, FilmSpec, Rect};
 use crate::render::cpu::CpuRenderer;
@@ -156,7 +156,9 @@ impl SceneFlags {
 
 /// Bakes a scene and prints what baking dropped.
 pub fn bake_scene(scene: &Scene) -> anyhow::Result<SceneData> {
+    let bar = progress::baking(scene);
     let data = bake(scene).with_context(|| scene.name.clone())?;
+    bar.finish_and_clear();
     for warning in &data.warnings {
         log::warn!("{warning}");
     }

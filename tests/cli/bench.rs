@@ -159,3 +159,18 @@ fn a_scene_that_is_not_seen_is_measured_with_primary_rays_alone() {
     let scene = &json(&folder, "out.json")["scenes"][0];
     assert_eq!(scene["rays"].as_array().map(Vec::len), Some(1), "{scene}");
 }
+
+#[test]
+fn built_in_scenes_are_measured_and_rendered_by_name() {
+    let folder = Folder::new();
+    let scenes = ["sphereflake:1", "terrain:200", "hairball:200", "teapots:4000"];
+    let few = ["--on", "cpu", "--only", "primary", "--rays", "300", "--runs", "1", "--json", "out.json"];
+    let out = folder.done(&[&["bench"], &scenes[..], &few].concat());
+    assert_eq!(out.matches("  hits: equal\n").count(), 4, "{out}");
+    let report = json(&folder, "out.json");
+    let placed = |at: usize| report["scenes"][at]["size"]["placed"].as_u64().expect("a count");
+    // With the two triangles of the ground, which a terrain does not have.
+    assert_eq!([placed(0), placed(1), placed(2)], [10 + 2, 200, 192 + 2]);
+    folder.cpu(&["render", "teapots:4000", "--size", "16x9", "--spp", "1", "-o", "a.png"]);
+    assert!(folder.fails(65, &["render", "terrain:1", "-o", "b.png"]).contains("found \"1\""));
+}

@@ -12,9 +12,9 @@ use std::path::Path;
 /// Triangles of `terrain`, `hairball` and `teapots` that do not say.
 pub const DEFAULT_TRIANGLES: u64 = 200_000;
 pub const DEFAULT_LEVEL: u64 = 4;
-/// Cells along each side of a teapot's patches, and the triangles they make: fewer than 2 * 32 * 8^2, for the poles.
+/// Cells along each side of a teapot's patches, and the triangles they make: 2 * 32 * 8^2 less 8 for each of eight patches that end in a pole.
 pub const TEAPOT_STEPS: u32 = 8;
-pub const TEAPOT_TRIANGLES: u64 = 3968;
+pub const TEAPOT_TRIANGLES: u64 = 4032;
 
 /// What there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +95,7 @@ fn build(path: &Path, kind: Builtin, size: u64) -> Scene {
 
 /// Haines's colours and lights, twice as far away as his sphere is small.
 fn sphereflake(scene: &mut Scene, level: u32) {
-    look(scene, [4.2, 3.4, 2.6], [0.0, 0.1, 0.0], 45.0);
+    look(scene, [3.6, 2.9, 2.2], [0.0, 0.15, 0.0], 45.0);
     let gold = Material {
         model: Model::BlinnPhong { exponent: 60.0 },
         color: Rgb::new(1.0, 0.75, 0.33),
@@ -109,14 +109,14 @@ fn sphereflake(scene: &mut Scene, level: u32) {
     for transform in shape::sphereflake(level) {
         add_object(scene, Geometry::Sphere, transform, gold);
     }
-    add_ground(scene, -1.0, 24.0, Rgb::new(0.6, 0.5, 0.4));
+    add_ground(scene, -1.0, 24.0, Rgb::new(0.36, 0.3, 0.25));
     for position in [[8.0, 4.0, 6.0], [2.0, 8.0, -8.0], [-6.0, 10.0, 2.0]] {
-        add_light(scene, LightKind::Point { position: Vec3::from(position) }, 0.4);
+        add_light(scene, LightKind::Point { position: Vec3::from(position) }, 0.33);
     }
 }
 
 fn terrain(scene: &mut Scene, triangles: u64) {
-    look(scene, [0.25, 0.42, 1.25], [0.0, 0.0, 0.0], 42.0);
+    look(scene, [0.2, 0.32, 1.1], [0.0, 0.02, 0.1], 42.0);
     let mesh = add_mesh(scene, shape::terrain(triangles));
     let ground = add_material(scene, Material { color: Rgb::ONE, ..Material::grey("ground") });
     add_object(scene, mesh, Transform::default(), ground);
@@ -135,7 +135,7 @@ fn hairball(scene: &mut Scene, triangles: u64) {
     };
     let hair = add_material(scene, hair);
     add_object(scene, mesh, Transform::default(), hair);
-    add_ground(scene, -1.3, 16.0, Rgb::new(0.5, 0.52, 0.55));
+    add_ground(scene, -1.4, 16.0, Rgb::new(0.5, 0.52, 0.55));
     add_sun(scene, [0.6, -0.8, -0.55], 1.0);
 }
 
@@ -143,7 +143,7 @@ fn hairball(scene: &mut Scene, triangles: u64) {
 fn teapots(scene: &mut Scene, triangles: u64) {
     let count = teapot_count(triangles);
     let size = shape::field_size(count) as f32;
-    look(scene, [0.22 * size, 0.3 * size + 4.0, 0.72 * size + 6.0], [0.0, 0.0, 0.04 * size], 40.0);
+    look(scene, [0.2 * size, 0.25 * size + 3.0, 0.62 * size + 5.0], [0.0, 0.0, 0.1 * size], 38.0);
     let mesh = add_mesh(scene, shape::teapot(TEAPOT_STEPS));
     let glossy = |name: &str, color: [f32; 3], k_r: f32| Material {
         model: Model::BlinnPhong { exponent: 120.0 },

@@ -16,7 +16,7 @@ const ROOT: f64 = 0.35;
 const THICKNESS: f64 = 0.11;
 
 /// About `triangles` triangles (1 to `TRIANGLES_MAX`; whole hairs of 96) in curled hairs that leave a ball around the
-/// origin, all within 1.25 of it. The more of them, the thinner.
+/// origin, all within 1.4 of it. The more of them, the thinner.
 pub fn hairball(triangles: u64) -> Mesh {
     debug_assert!((1..=super::TRIANGLES_MAX).contains(&triangles), "{triangles} triangles");
     let hairs = ((triangles + HAIR_TRIANGLES / 2) / HAIR_TRIANGLES).max(1) as u32;
@@ -25,10 +25,9 @@ pub fn hairball(triangles: u64) -> Mesh {
     for hair in 0..hairs {
         let points = curve(hair, hairs);
         builder.add_grid(AROUND, ALONG, |i, j| {
-            let (at, tangent) = points[j as usize];
+            let Point { at, tangent, side } = points[j as usize];
             let along = f64::from(j) / f64::from(ALONG);
             let around = angle_of_turn(f64::from(i % AROUND) / f64::from(AROUND));
-            let side = unit(tangent.cross(least_axis(tangent)));
             let normal = side * around.x + tangent.cross(side) * around.y;
             let radius = spacing * THICKNESS * (1.0 - 0.8 * along);
             let uv = DVec2::new(f64::from(i) / f64::from(AROUND), along);
@@ -38,8 +37,18 @@ pub fn hairball(triangles: u64) -> Mesh {
     builder.finish()
 }
 
-/// Points and unit tangents of a hair, root to tip.
-fn curve(hair: u32, hairs: u32) -> Vec<(DVec3, DVec3)> {
+/// A point in the middle of a hair.
+#[derive(Clone, Copy)]
+struct Point {
+    at: DVec3,
+    /// Unit, towards the tip.
+    tangent: DVec3,
+    /// Unit, across the hair, turned as little as possible from point to point.
+    side: DVec3,
+}
+
+/// The middle of a hair, root to tip.
+fn curve(hair: u32, hairs: u32) -> Vec<Point> {
     let random = |k: u32| f64::from(hash3(hair, k, 0x4a17)) / 4_294_967_296.0;
     // Roots on a Fibonacci lattice of the sphere: even, without rows.
     let height = 1.0 - (2.0 * f64::from(hair) + 1.0) / f64::from(hairs);
@@ -49,20 +58,22 @@ fn curve(hair: u32, hairs: u32) -> Vec<(DVec3, DVec3)> {
     let right = unit(out.cross(least_axis(out)));
     let up = out.cross(right);
     let (length, curl, turns, phase) =
-        (0.55 + 0.2 * random(0), 0.05 + 0.07 * random(1), 1.0 + 2.0 * random(2), random(3));
-    let droop = 0.12 + 0.1 * random(4);
+        (0.55 + 0.15 * random(0), 0.04 + 0.06 * random(1), 1.0 + 2.0 * random(2), random(3));
+    let droop = 0.04 + 0.08 * random(4);
     let at = |s: f64| {
         let spin = angle_of_turn((phase + turns * s).fract());
         let sway = (right * spin.x + up * spin.y) * (curl * s);
         out * (ROOT + length * s) + sway - DVec3::Y * (droop * s * s)
     };
     let step = 1.0 / f64::from(ALONG);
-    (0..=ALONG)
-        .map(|j| {
-            let s = f64::from(j) * step;
-            (at(s), unit(at(s + 0.5 * step) - at(s - 0.5 * step)))
-        })
-        .collect()
+    let mut side = right;
+    let point = |j: u32| {
+        let s = f64::from(j) * step;
+        let tangent = unit(at(s + 0.5 * step) - at(s - 0.5 * step));
+        side = unit(side - tangent * tangent.dot(side));
+        Point { at: at(s), tangent, side }
+    };
+    (0..=ALONG).map(point).collect()
 }
 
 /// The axis along which `v` is shortest.
@@ -86,7 +97,7 @@ mod tests {
         for (asked, made) in [(1, 96), (1000, 960), (50_000, 50_016)] {
             let mesh = hairball(asked);
             assert_eq!(mesh.triangles.len(), made, "{asked}");
-            assert!(mesh.positions.iter().all(|p| p.length() < 1.25 && p.length() > 0.2), "{asked}");
+            assert!(mesh.positions.iter().all(|p| p.length() < 1.4 && p.length() > 0.2), "{asked}");
         }
     }
 

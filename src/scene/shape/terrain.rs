@@ -8,10 +8,10 @@ use glam::Vec3;
 pub const TRIANGLES_MAX: u64 = 2 * (super::SEGMENTS_MAX as u64) * (super::SEGMENTS_MAX as u64);
 /// Hills along a side, and how high they are: the square is 2 x 2.
 const FEATURES: f64 = 5.0;
-const HEIGHT: f64 = 0.34;
+const HEIGHT: f64 = 0.12;
 
 /// A fractal height field of about `triangles` triangles (2 to `TRIANGLES_MAX`; twice the nearest square number) over a
-/// square of 2 x 2 around the origin, y up, about -0.3 to 0.3 high. As fine as its grid. Colours of vertices: grass where it
+/// square of 2 x 2 around the origin, y up, about -0.07 to 0.2 high. As fine as its grid. Colours of vertices: grass where it
 /// is low and flat, rock, snow.
 pub fn terrain(triangles: u64) -> Mesh {
     debug_assert!((2..=TRIANGLES_MAX).contains(&triangles), "{triangles} triangles");
@@ -36,8 +36,8 @@ fn color(y: f32, flat: f32) -> Vec3 {
     const ROCK: Vec3 = Vec3::new(0.22, 0.18, 0.14);
     const SNOW: Vec3 = Vec3::new(0.85, 0.87, 0.90);
     let step = |low: f32, high: f32, x: f32| ((x - low) / (high - low)).clamp(0.0, 1.0);
-    let ground = ROCK + (GRASS - ROCK) * (step(0.68, 0.82, flat) * (1.0 - step(-0.02, 0.10, y)));
-    ground + (SNOW - ground) * (step(0.13, 0.20, y) * step(0.45, 0.65, flat))
+    let ground = ROCK + (GRASS - ROCK) * (step(0.72, 0.86, flat) * (1.0 - step(0.0, 0.06, y)));
+    ground + (SNOW - ground) * (step(0.07, 0.11, y) * step(0.5, 0.7, flat))
 }
 
 #[cfg(test)]
@@ -57,8 +57,8 @@ mod tests {
     fn a_terrain_faces_up_and_stays_in_its_square() {
         let mesh = terrain(5000);
         assert!(mesh.normals.iter().all(|n| n.y > 0.0));
-        assert!(mesh.positions.iter().all(|p| p.x.abs() <= 1.0 && p.z.abs() <= 1.0 && p.y.abs() < 0.8));
+        assert!(mesh.positions.iter().all(|p| p.x.abs() <= 1.0 && p.z.abs() <= 1.0 && p.y.abs() < 0.35));
         let high = mesh.positions.iter().fold(f32::MIN, |high, p| high.max(p.y));
-        assert!(high > 0.1, "no mountains: {high}");
+        assert!(high > 0.05, "no mountains: {high}");
     }
 }
