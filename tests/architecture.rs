@@ -14,10 +14,10 @@ const TWINS: [&str; 4] = ["layout", "shading", "trace", "transport"];
 
 /// Functions whose twins differ or that have none: (folder and stem, function, why).
 const ALONE: [(&str, &str, &str); 4] = [
-    ("trace/traverse", "highest_bit", "findMSB in GLSL"),
     ("trace/traverse", "push", "GLSL writes to the stack, an array of the caller, in place"),
     ("trace/traverse", "stack_used", "measures the stack for tests of bake's bound"),
     ("trace/traverse", "traverse", "`deepest` measures the stack, on the host only"),
+    ("trace/traverse", "walk_mesh", "`deepest` measures the stack, on the host only"),
 ];
 
 /// What of the house each folder may use, from the table in ARCHITECTURE.md; `None` stands for everything.

@@ -19,8 +19,6 @@ use rayon::prelude::*;
 
 /// k of the film's fixed point (DESIGN, strict rule 8): 2^-22 of a film unit is the smallest step.
 const FILM_BITS: i32 = 22;
-/// A hierarchy that needs more entries than this is rebuilt when the scene does not fit the stack.
-const DEEP_PART: u32 = 12;
 
 /// Bakes a scene whose indices are valid (`scene::load` guarantees it).
 pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
@@ -207,26 +205,19 @@ fn instance_shadow(scene: &Scene, object: &Object) -> (bool, Option<String>) {
     (casts, warning)
 }
 
-/// Builds the top level and lays all hierarchies out in one array. Rebuilds what is too deep for the stack.
-fn build_hierarchy(mut parts: Parts, data: &mut SceneData) -> Result<(), BakeError> {
+/// Builds the top level and lays all hierarchies out in one array.
+fn build_hierarchy(parts: Parts, data: &mut SceneData) -> Result<(), BakeError> {
     data.header.top_margin = top_margin(parts.growth);
     data.header.top_root = INVALID;
     if parts.shown.is_empty() {
         return Ok(());
     }
     let boxes: Vec<Bounds> = parts.shown.iter().map(|&(_, world)| world).collect();
-    let mut top = Tree::build(&boxes, TOP_LEAF);
-    data.stack_depth = total_depth(&top, &parts);
+    let top = Tree::build(&boxes, TOP_LEAF);
+    let meshes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.stack_depth());
+    data.stack_depth = meshes.fold(top.stack_depth(), u32::max);
     if data.stack_depth > STACK_SIZE {
-        let deep = |mesh: &&mut BakedMesh| mesh.stack_depth() > DEEP_PART;
-        parts.meshes.iter_mut().flatten().filter(deep).for_each(BakedMesh::flatten_tree);
-        if top.stack_depth(|_| Some(0)) > DEEP_PART {
-            top = Tree::median_split(&boxes, TOP_LEAF);
-        }
-        data.stack_depth = total_depth(&top, &parts);
-        if data.stack_depth > STACK_SIZE {
-            return Err(BakeError::Deep(data.stack_depth));
-        }
+        return Err(BakeError::Deep(data.stack_depth));
     }
 
     let triangles = parts.meshes.iter().flatten().map(|mesh| mesh.triangles.len()).sum();
@@ -252,13 +243,6 @@ fn build_hierarchy(mut parts: Parts, data: &mut SceneData) -> Result<(), BakeErr
         instance.root = mesh.map_or(INVALID, |id| roots[id]);
     }
     Ok(())
-}
-
-/// Entries of the stack that the worst ray needs, top level and mesh together.
-fn total_depth(top: &Tree, parts: &Parts) -> u32 {
-    let meshes: Vec<u32> = parts.meshes.iter().map(|mesh| mesh.as_ref().map_or(0, BakedMesh::stack_depth)).collect();
-    // A sphere is tested on the spot.
-    top.stack_depth(|place| parts.shown[top.order[place as usize] as usize].0.map(|mesh| meshes[mesh]))
 }
 
 /// All of the header that does not depend on the arrays.
