@@ -7,7 +7,7 @@ use gonio::scene::SceneError;
 #[track_caller]
 fn refusal(result: Result<gonio::scene::Scene, SceneError>) -> String {
     let text = result.map(|_| ()).expect_err("to be refused").to_string();
-    text.rsplit_once('/').map_or(text.clone(), |(_, name)| name.to_owned())
+    text.find("a.xml").map_or(text.clone(), |place| text[place..].to_owned())
 }
 
 /// The only element stands on line 2.
@@ -96,27 +96,20 @@ fn values_of_the_wrong_type_or_range_are_refused_where_they_stand() {
     ] {
         refused(&format!("<shape type=\"sphere\">{element}</shape>"), expected);
     }
-    refused(
-        &"<shape type=\"serialized\"><integer name=\"shape_index\" value=\"1.5\"/></shape>"
-            .replace("serialized\">", "serialized\"><string name=\"filename\" value=\"a.xml\"/>"),
-        "a.xml:2:104: \"shape_index\" must be an integer",
-    );
+    refused(&"<shape type=\"serialized\"><integer name=\"shape_index\" value=\"1.5\"/></shape>".replace("serialized\">", "serialized\"><string name=\"filename\" value=\"a.xml\"/>"), "a.xml:2:100: \"shape_index\" must be an integer");
 }
 
 #[test]
 fn colours_and_spectra_that_make_no_sense_are_refused() {
     for (value, expected) in [
-        ("<rgb name=\"reflectance\" value=\"0.1 0.2\"/>", "a.xml:2:54: a colour is 1 or 3 numbers"),
-        ("<rgb name=\"reflectance\" value=\"#12345\"/>", "a.xml:2:54: expected \"#rrggbb\""),
-        ("<rgb name=\"reflectance\" value=\"2\"/>", "a.xml:2:54: a reflectance is at most 1"),
-        ("<rgb name=\"reflectance\" value=\"-1\"/>", "a.xml:2:54: a colour has no negative part"),
-        (
-            "<spectrum name=\"reflectance\" value=\"400:1, 500\"/>",
-            "a.xml:2:59: expected wavelength:value, found \"500\"",
-        ),
-        ("<spectrum name=\"reflectance\" value=\"500:1, 400:1\"/>", "a.xml:2:59: the wavelengths of a spectrum ascend"),
-        ("<spectrum name=\"reflectance\" value=\"500:1\"/>", "a.xml:2:59: a spectrum has 2 to 65536 wavelengths"),
-        ("<spectrum name=\"reflectance\" value=\"grey\"/>", "a.xml:2:59: a spectrum is a number or a list"),
+        ("<rgb name=\"reflectance\" value=\"0.1 0.2\"/>", "a.xml:2:53: a colour is 1 or 3 numbers"),
+        ("<rgb name=\"reflectance\" value=\"#12345\"/>", "a.xml:2:53: expected \"#rrggbb\""),
+        ("<rgb name=\"reflectance\" value=\"2\"/>", "a.xml:2:53: a reflectance is at most 1"),
+        ("<rgb name=\"reflectance\" value=\"-1\"/>", "a.xml:2:53: a colour has no negative part"),
+        ("<spectrum name=\"reflectance\" value=\"400:1, 500\"/>", "a.xml:2:58: expected wavelength:value, found \"500\""),
+        ("<spectrum name=\"reflectance\" value=\"500:1, 400:1\"/>", "a.xml:2:58: the wavelengths of a spectrum ascend"),
+        ("<spectrum name=\"reflectance\" value=\"500:1\"/>", "a.xml:2:58: a spectrum has 2 to 65536 wavelengths"),
+        ("<spectrum name=\"reflectance\" value=\"grey\"/>", "a.xml:2:58: a spectrum is a number or a list"),
     ] {
         refused(&format!("<bsdf type=\"diffuse\">{value}</bsdf>"), expected);
     }
@@ -134,13 +127,13 @@ fn colours_and_spectra_that_make_no_sense_are_refused() {
 fn transforms_that_have_no_inverse_or_no_direction_are_refused() {
     for (steps, expected) in [
         ("<scale x=\"0\"/>", "a.xml:2:22: the transform flattens space"),
-        ("<rotate angle=\"90\"/>", "a.xml:2:50: <rotate> needs an axis"),
-        ("<rotate x=\"1\"/>", "a.xml:2:50: <rotate> needs the attribute \"angle\""),
-        ("<lookat origin=\"0,0,0\" target=\"0,0,0\"/>", "a.xml:2:81: \"origin\" and \"target\" are the same point"),
-        ("<lookat origin=\"0,0,0\" target=\"0,1,0\" up=\"0,1,0\"/>", "a.xml:2:92: \"up\" is parallel to the view"),
-        ("<matrix value=\"1 0 0\"/>", "a.xml:2:65: expected 16 or 9 numbers, found 3"),
-        ("<matrix value=\"1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\"/>", "a.xml:2:65: the last row of an affine matrix"),
-        ("<skew x=\"1\"/>", "a.xml:2:50: <skew> is no step of a transform"),
+        ("<rotate angle=\"90\"/>", "a.xml:2:49: <rotate> needs an axis"),
+        ("<rotate x=\"1\"/>", "a.xml:2:49: <rotate> needs the attribute \"angle\""),
+        ("<lookat origin=\"0,0,0\" target=\"0,0,0\"/>", "a.xml:2:80: \"origin\" and \"target\" are the same point"),
+        ("<lookat origin=\"0,0,0\" target=\"0,1,0\" up=\"0,1,0\"/>", "a.xml:2:91: \"up\" is parallel to the view"),
+        ("<matrix value=\"1 0 0\"/>", "a.xml:2:64: expected 16 or 9 numbers, found 3"),
+        ("<matrix value=\"1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\"/>", "a.xml:2:64: the last row of an affine matrix"),
+        ("<skew x=\"1\"/>", "a.xml:2:49: <skew> is no step of a transform"),
     ] {
         refused(&format!("<shape type=\"sphere\"><transform name=\"to_world\">{steps}</transform></shape>"), expected);
     }

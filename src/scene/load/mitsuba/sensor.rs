@@ -21,6 +21,12 @@ pub fn read_sensor(document: &Document, node: Node, scene: &mut Scene) -> Result
         read_sampler(&Object::open(document, child.node)?, &mut scene.settings)?;
     }
     scene.camera = read_camera(&object, &scene.film)?;
+    if object.plugin.name == "thinlens" {
+        let radius = object.float_in("aperture_radius", 0.0, 1e12)?;
+        object.required("aperture_radius", radius)?;
+        let location = document.location_of(node);
+        scene.warnings.push(format!("{location}: the sensor \"thinlens\" is drawn without its lens: all is in focus"));
+    }
     Ok(())
 }
 
