@@ -7,6 +7,7 @@ pub mod bake;
 pub mod cli;
 pub mod film;
 pub mod layout;
+pub mod plot;
 pub mod render;
 pub mod scene;
 pub mod shaders;

@@ -158,8 +158,7 @@ pub fn conductor_table(material: &mut Material, tables: &mut Vec<f32>) {
     });
     header[2] = mean(&table) as f32;
     for channel in 0..3 {
-        header[3 + channel] =
-            cosine_mean(|mu| f64::from(fresnel_material(material, mu as f32)[channel])) as f32;
+        header[3 + channel] = cosine_mean(|mu| f64::from(fresnel_material(material, mu as f32)[channel])) as f32;
     }
     finish(material, &header, &table, tables);
 }

@@ -3,9 +3,7 @@
 use super::BakeError;
 use super::albedo::{conductor_table, constant_table, diffuse_reflectance, kelemen_table, plastic_table};
 use crate::layout::*;
-use crate::scene::{
-    self, Distribution, Fresnel, Lobe, Masking, Model, Parameter, Transparency, WardNormalisation,
-};
+use crate::scene::{self, Distribution, Fresnel, Lobe, Masking, Model, Parameter, Transparency, WardNormalisation};
 use glam::Vec3;
 
 /// An index closer to 1 than this would leave rough glass without facets that refract.
@@ -16,10 +14,7 @@ const BLEND_LEAVES: usize = MAX_LEAVES as usize;
 const BLEND_DEPTH: usize = 8;
 
 /// One material; its table is appended to `tables`. A blend's materials are found by `bake_blends` later.
-pub fn bake_material(
-    material: &scene::Material,
-    tables: &mut Vec<f32>,
-) -> Result<Material, BakeError> {
+pub fn bake_material(material: &scene::Material, tables: &mut Vec<f32>) -> Result<Material, BakeError> {
     let mut baked = Material {
         color: material.color,
         specular_color: material.specular_color,
@@ -54,11 +49,7 @@ pub fn bake_material(
     Ok(baked)
 }
 
-fn bake_model(
-    material: &scene::Material,
-    baked: &mut Material,
-    tables: &mut Vec<f32>,
-) -> Result<(), BakeError> {
+fn bake_model(material: &scene::Material, baked: &mut Material, tables: &mut Vec<f32>) -> Result<(), BakeError> {
     match &material.model {
         Model::Lambert => baked.model = MODEL_LAMBERT,
         Model::OrenNayar { sigma } => {
@@ -266,4 +257,3 @@ pub fn casts_shadow(material: &scene::Material) -> bool {
     };
     material.casts_shadow.unwrap_or(!pane)
 }
-

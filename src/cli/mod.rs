@@ -7,6 +7,7 @@ mod interrupt;
 pub mod merge;
 mod output;
 pub mod parity;
+pub mod plot;
 mod progress;
 pub mod render;
 mod setup;
@@ -49,6 +50,8 @@ enum Command {
     Parity(parity::ParityArgs),
     /// Compare two pictures: ULP, MSE, FLIP.
     Compare(compare::CompareArgs),
+    /// Draw a model: lobes, distributions, Fresnel, albedo and others.
+    Plot(plot::PlotArgs),
     /// List what can be used, and why the rest cannot.
     Devices(devices::DevicesArgs),
     /// Print a completion script for a shell.
@@ -86,6 +89,7 @@ pub fn main() -> ExitCode {
         Command::Merge(args) => merge::run(args),
         Command::Parity(args) => parity::run(args, cli.quiet),
         Command::Compare(args) => compare::run(args),
+        Command::Plot(args) => plot::run(args),
         Command::Devices(args) => devices::run(args),
         Command::Completions { shell } => {
             // Into memory first: the generator panics where it cannot write.

@@ -6,7 +6,8 @@ use super::local::{shade_local, shade_through};
 use super::whitted::shade_whitted;
 use super::{DITHER_BACKGROUND, Queues, add_aov, add_contribution};
 use crate::layout::{
-    Hit, INTEGRATOR_LOCAL, INTEGRATOR_WHITTED, INVALID, Material, PathState, SceneView, load_instance, load_material, load_texture,
+    Hit, INTEGRATOR_LOCAL, INTEGRATOR_WHITTED, INVALID, Material, PathState, SceneView, load_instance, load_material,
+    load_texture,
 };
 use crate::shading::dielectric::transmittance;
 use crate::shading::material::albedo_material;

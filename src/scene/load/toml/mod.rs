@@ -20,7 +20,9 @@ mod shapes;
 mod texture;
 
 pub(super) use keys::LARGEST;
+pub use metal::{METALS, Metal};
 pub use overrides::Override;
+pub use reader::nearest;
 
 use super::staging::bare_scene;
 use crate::scene::{IntensityUnit, Rgb, Scene, SceneError};
