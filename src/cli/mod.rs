@@ -8,6 +8,7 @@ mod interrupt;
 pub mod merge;
 mod output;
 pub mod parity;
+pub mod plot;
 mod progress;
 pub mod render;
 mod setup;
@@ -53,6 +54,8 @@ enum Command {
     Bench(bench::BenchArgs),
     /// Compare two pictures: ULP, MSE, FLIP.
     Compare(compare::CompareArgs),
+    /// Draw a model: lobes, distributions, Fresnel, albedo and others.
+    Plot(plot::PlotArgs),
     /// Prove that pictures are right: compare them with those of Mitsuba 3.
     Verify(verify::VerifyArgs),
     /// List what can be used, and why the rest cannot.
@@ -93,6 +96,7 @@ pub fn main() -> ExitCode {
         Command::Parity(args) => parity::run(args, cli.quiet),
         Command::Bench(args) => bench::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Plot(args) => plot::run(args),
         Command::Verify(args) => verify::run(args),
         Command::Devices(args) => devices::run(args),
         Command::Completions { shell } => {

@@ -21,8 +21,9 @@ mod table;
 mod texture;
 
 pub(super) use keys::LARGEST;
+pub use metal::{METALS, Metal};
 pub use overrides::Override;
-pub(super) use reader::nearest;
+pub use reader::nearest;
 
 use super::staging::bare_scene;
 use crate::scene::{IntensityUnit, Rgb, Scene, SceneError};
