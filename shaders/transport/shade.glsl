@@ -25,7 +25,7 @@ void shade(PathState incoming, Hit hit) {
     SampleKey key = sample_key(path.pixel, path.sample_index, path.path_id);
     if (hit.instance == INVALID) {
         if (!(straight && header.hide_background != 0u)) {
-            if (header.integrator == INTEGRATOR_PATH) {
+            if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
                 shade_escape(path, key);
                 return;
             }
@@ -36,7 +36,9 @@ void shade(PathState incoming, Hit hit) {
         return;
     }
     // Light through a medium: Beer's law over the way just travelled (the direction is unit).
-    path.throughput *= transmittance(path.absorption, hit.t);
+    if (SCENE_HAS_ABSORPTION) {
+        path.throughput *= transmittance(path.absorption, hit.t);
+    }
     if (spectrum_max(path.throughput) < THROUGHPUT_MIN) {
         return;
     }
@@ -49,7 +51,7 @@ void shade(PathState incoming, Hit hit) {
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
         add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
-    if (header.integrator == INTEGRATOR_PATH) {
+    if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
         shade_path(path, key, hit, surface, material);
         return;
     }

@@ -126,12 +126,7 @@ fn emission(material: &Material) -> Vec3 {
     if material.model == MODEL_BLEND { Vec3::ZERO } else { emission_material(material) * own_weight(material) }
 }
 
-fn collect_instance(
-    data: &SceneData,
-    index: usize,
-    primitives: &dyn Fn(usize) -> Vec<u32>,
-    all: &mut Collection,
-) {
+fn collect_instance(data: &SceneData, index: usize, primitives: &dyn Fn(usize) -> Vec<u32>, all: &mut Collection) {
     let instance = &data.instances[index];
     let first = all.emitters.len();
     let glows = |id: u32| luminance(emission(&data.materials[id as usize]).as_dvec3()) > 0.0;

@@ -10,10 +10,11 @@ use super::model::{bake_blends, bake_material, casts_shadow};
 use super::srgb::srgb_table;
 use super::{BakeError, SceneData};
 use crate::layout::{
-    Camera, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH,
-    KIND_SPHERE, SAMPLER_INDEPENDENT, SAMPLER_SOBOL, SAMPLER_STRATIFIED, STACK_SIZE, SceneHeader,
+    Camera, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID,
+    Instance, KIND_MESH, KIND_SPHERE, SAMPLER_INDEPENDENT, SAMPLER_SOBOL, SAMPLER_STRATIFIED, STACK_SIZE, SceneHeader,
 };
 use crate::scene::{self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene};
+use crate::shading::material::emission_material;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -90,10 +91,13 @@ fn bake_light_sources(scene: &Scene, parts: &Parts, data: &mut SceneData) -> Res
     if scene.ambient != Vec3::ZERO {
         data.warnings.push("ambient light has no effect under path and direct: light comes from what glows".to_owned());
     }
+    let shines = |material: &crate::layout::Material| emission_material(material) != Vec3::ZERO;
+    data.header.glows = u32::from(scene.background.shines() || data.materials.iter().any(shines));
     let world = parts.shown.iter().fold(Bounds::EMPTY, |all, &(_, own)| all.union(own));
     let primitives = |instance: usize| {
         let mesh = parts.shown[instance].0.and_then(|id| parts.meshes[id].as_ref());
-        let mut primitives: Vec<u32> = mesh.map_or(Vec::new(), |mesh| mesh.triangles.iter().map(|t| t.primitive).collect());
+        let mut primitives: Vec<u32> =
+            mesh.map_or(Vec::new(), |mesh| mesh.triangles.iter().map(|t| t.primitive).collect());
         primitives.sort_unstable();
         primitives
     };

@@ -5,9 +5,8 @@ use super::area_light::{
 };
 use super::textured::material_at;
 use crate::layout::{
-    EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_SPHERE, EMITTER_TEXTURED, Emitter, Hit, KIND_SPHERE,
-    Ray, SceneView, T_INFINITE, load_instance, load_light, load_material,
-    load_table,
+    EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_SPHERE, EMITTER_TEXTURED, Emitter, Hit, KIND_SPHERE, Ray, SceneView,
+    T_INFINITE, load_instance, load_light, load_material, load_table,
 };
 use crate::shading::environment::sample_environment;
 use crate::shading::light::{LightSample, no_light, sample_light};

@@ -8,8 +8,9 @@ use super::plan::QueuePlan;
 use super::record::Recorder;
 use super::scene::SceneBuffers;
 use crate::bake::SceneData;
-use crate::layout::{Batch, Control, DispatchArguments, KIND_SPHERE};
+use crate::layout::{Batch, Control, DispatchArguments, EMITTER_TEXTURED, KIND_SPHERE};
 use crate::shaders;
+use glam::Vec3;
 use std::mem::offset_of;
 
 /// The wavefront's kernels in the order in which they run.
@@ -45,7 +46,7 @@ const NAMES: Stages<&str> = Stages {
 };
 
 /// Specialisation constants that say what the scene uses (`shaders/kernels/bindings.glsl`).
-fn scene_constants(data: &SceneData) -> [(u32, u32); 7] {
+fn scene_constants(data: &SceneData) -> [(u32, u32); 12] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
     let models = data.materials.iter().fold(0, |mask, material| mask | 1 << material.model);
     [
@@ -56,6 +57,12 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 7] {
         (9, data.header.filter_kind),
         (10, u32::from(spheres)),
         (11, data.header.aovs),
+        (12, data.emitters.iter().fold(0, |mask, emitter| mask | 1 << emitter.kind)),
+        (13, u32::from(data.emitters.iter().any(|emitter| emitter.flags & EMITTER_TEXTURED != 0))),
+        (14, data.header.environment_maps),
+        // Textures may cut holes.
+        (15, u32::from(!data.textures.is_empty() || data.materials.iter().any(|material| material.k_t > 0.0))),
+        (16, u32::from(data.materials.iter().any(|material| material.absorption != Vec3::ZERO))),
     ]
 }
 

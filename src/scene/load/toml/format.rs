@@ -37,7 +37,12 @@ pub static RENDER: Section = Section {
             "`\"sobol\"`",
             "Owen-scrambled Sobol' points (Burley 2020), jittered strata, or plain random numbers",
         ),
-        key("max_depth", Kind::Integer { min: 0, max: 64 }, "8", "Scattering events a path may have: 0 shows what glows, 1 adds light scattered once. Mitsuba counts one more (its -1 is our 64)"),
+        key(
+            "max_depth",
+            Kind::Integer { min: 0, max: 64 },
+            "8",
+            "Scattering events a path may have: 0 shows what glows, 1 adds light scattered once. Mitsuba counts one more (its -1 is our 64)",
+        ),
         key(
             "min_weight",
             Kind::Number(Range::UNIT),

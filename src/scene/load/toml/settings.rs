@@ -7,7 +7,8 @@ use super::place::read_rotation;
 use super::reader::{Reader, Result, in_range};
 use super::texture::Textures;
 use crate::scene::{
-    Background, Camera, Environment, Film, Filter, Integrator, IntensityUnit, Projection, RenderSettings, Sampler, ToneMap,
+    Background, Camera, Environment, Film, Filter, Integrator, IntensityUnit, Projection, RenderSettings, Sampler,
+    ToneMap,
 };
 use glam::Vec3;
 
@@ -170,7 +171,8 @@ fn check_view(table: &Reader, camera: &Camera) -> Result<()> {
 /// What `[background]` writes; what a gradient leaves out is black.
 pub fn read_background(root: &Reader, textures: &mut Textures) -> Result<Background> {
     let Some(table) = root.table("background", &BACKGROUND)? else { return Ok(Background::BLACK) };
-    for (key, other) in [("color", "bottom"), ("color", "top"), ("image", "color"), ("image", "bottom"), ("image", "top")]
+    for (key, other) in
+        [("color", "bottom"), ("color", "top"), ("image", "color"), ("image", "bottom"), ("image", "top")]
     {
         table.exclusive(key, other)?;
     }
