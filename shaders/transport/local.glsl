@@ -113,7 +113,7 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
 
 // Lets the ray go on through a pane.
 void shade_through(PathState path, Surface surface, Material material) {
-    if (material.k_t > 0.0) {
+    if (SCENE_HAS_PANES && material.k_t > 0.0) {
         vec4 tint = vec4(material.k_t);
         if ((material.flags & MATERIAL_FILTERED) != 0u) {
             tint *= spectrum_from_rgb(material.transmit_color);

@@ -37,7 +37,9 @@ void shade(PathState incoming, Hit hit) {
         return;
     }
     // Light through a medium: Beer's law over the way just travelled (the direction is unit).
-    path.throughput *= transmittance(path.absorption, hit.t);
+    if (SCENE_HAS_ABSORPTION) {
+        path.throughput *= transmittance(path.absorption, hit.t);
+    }
     if (spectrum_max(path.throughput) < THROUGHPUT_MIN) {
         return;
     }

@@ -18,6 +18,7 @@ use crate::layout::{
 use crate::scene::{
     self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene, Shading,
 };
+use crate::shading::material::emission_material;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -106,6 +107,8 @@ fn bake_light_sources(scene: &Scene, parts: &Parts, data: &mut SceneData) -> Res
     if scene.ambient != Vec3::ZERO {
         data.warnings.push("ambient light has no effect under path and direct: light comes from what glows".to_owned());
     }
+    let shines = |material: &crate::layout::Material| emission_material(material) != Vec3::ZERO;
+    data.header.glows = u32::from(scene.background.shines() || data.materials.iter().any(shines));
     let world = parts.shown.iter().fold(Bounds::EMPTY, |all, &(_, own)| all.union(own));
     let primitives = |instance: usize| {
         let mesh = parts.shown[instance].0.and_then(|id| parts.meshes[id].as_ref());

@@ -16,7 +16,8 @@ use super::{
     count_limited, push_path, push_shadow,
 };
 use crate::layout::{
-    EMITTER_LIGHT, Hit, MATERIAL_FILTERED, Material, PathState, SceneView, ShadowRay, T_INFINITE, load_emitter,
+    EMITTER_LIGHT, Hit, MATERIAL_FILTERED, MODEL_THIN_DIELECTRIC, Material, PathState, SceneView, ShadowRay,
+    T_INFINITE, load_emitter,
 };
 use crate::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
 use crate::shading::environment::{background, pdf_environment};
@@ -111,6 +112,10 @@ fn scatter(
     wo: Vec3,
     queues: &mut Queues,
 ) {
+    // The last ray can only meet what glows.
+    if scene.header.glows == 0 && path.depth + 1 >= scene.header.max_depth {
+        return;
+    }
     let wo_local = to_local(frame, wo);
     let u_lobe = sample_1d(key, DIMENSION_LOBE);
     let bsdf = sample_material(scene, material, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
@@ -124,7 +129,7 @@ fn scatter(
     next.path_id = hash_combine(path.path_id, LOBE_SCATTER);
     next.coverage = 0.0;
     next.pdf = if (bsdf.flags & SAMPLE_DELTA) != 0 { 0.0 } else { bsdf.pdf };
-    if (bsdf.flags & SAMPLE_TRANSMIT) != 0 {
+    if (bsdf.flags & SAMPLE_TRANSMIT) != 0 && material.model != MODEL_THIN_DIELECTRIC {
         next.eta = path.eta * bsdf.eta;
         next.absorption = if bsdf.wi.z < 0.0 { material.absorption } else { Vec3::ZERO };
     }
