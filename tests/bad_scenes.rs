@@ -43,7 +43,10 @@ fn unknown_keys_are_refused_with_the_nearest_one() {
         ("[rander]\nsamples = 1\n", "a.toml:5:2: unknown key \"rander\"; did you mean \"render\"?"),
         ("[render]\n  smaples = 3\n", "a.toml:6:3: unknown key \"smaples\"; did you mean \"samples\"?"),
         ("[render]\nspp = 3\n", "a.toml:6:1: unknown key \"spp\"; did you mean \"samples\"?"),
-        ("[[material]]\nname = \"a\"\nroughnes = 1\n", "a.toml:7:1: unknown key \"roughnes\"; did you mean \"m\"?"),
+        (
+            "[[material]]\nname = \"a\"\nroughnes = 1\n",
+            "a.toml:7:1: unknown key \"roughnes\"; did you mean \"roughness\"?",
+        ),
         ("[[material]]\nname = \"a\"\nkd = 1\n", "a.toml:7:1: unknown key \"kd\"; did you mean \"k_d\"?"),
         (
             "grid = { count = [1, 1, 1], spacin = [1, 1, 1] }\n",
@@ -194,7 +197,7 @@ fn materials_that_mean_nothing_are_refused() {
     let cases: &[(String, &str)] = &[
         (
             "model = \"cook-torrence\"".into(),
-            "a.toml:7:9: \"model\" must be \"lambert\", \"phong\", \"blinn-phong\", \"cook-torrance\", \"mirror\", \"dielectric\" or \"emissive\", found \"cook-torrence\"; did you mean \"cook-torrance\"?",
+            "a.toml:7:9: \"model\" must be \"lambert\", \"phong\", \"blinn-phong\", \"cook-torrance\", \"mirror\", \"dielectric\", \"emissive\", \"oren-nayar\", \"ward\", \"ashikhmin-shirley\", \"kelemen\", \"conductor\", \"rough-conductor\", \"rough-dielectric\", \"thin-dielectric\", \"plastic\", \"rough-plastic\", \"principled\", \"measured\", \"null\" or \"blend\", found \"cook-torrence\"; did you mean \"cook-torrance\"?",
         ),
         ("color = [1, 2, 3]".into(), "a.toml:7:9: \"color\" is a reflectance, at most 1, found 3"),
         ("color = \"octarine\"".into(), "a.toml:7:9: \"color\" must be a colour >= 0, found the string \"octarine\""),

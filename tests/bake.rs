@@ -151,35 +151,6 @@ fn no_ray_needs_more_stack_than_baking_says() {
 }
 
 #[test]
-fn a_scene_too_deep_for_the_stack_is_rebuilt_until_it_fits() {
-    // A cascade of cascades: neither level is too deep by itself.
-    let mut scene = scene_of(vec![cascade(380, 0.9)]);
-    let mesh_alone = bake(&scene).expect("bakes").stack_depth;
-    scene.objects.clear();
-    let mut radius = 1.0e9;
-    for _ in 0..360 {
-        for i in 0..4 {
-            let corner = DVec3::new(1.0 + 0.02 * f64::from(i % 3), 0.02 * f64::from(i / 3), 0.0) * radius;
-            let transform = DAffine3::from_translation(corner) * DAffine3::from_scale(DVec3::splat(0.004 * radius));
-            scene.objects.push(object(Geometry::Mesh(MeshId(0)), Transform(transform)));
-        }
-        radius *= 0.9;
-    }
-    let sphere = |o: &Object| Object { geometry: Geometry::Sphere, ..o.clone() };
-    let spheres = Scene { objects: scene.objects.iter().map(sphere).collect(), ..scene.clone() };
-    let top_alone = bake(&spheres).expect("bakes").stack_depth;
-    assert!(mesh_alone + top_alone > STACK_SIZE, "{mesh_alone} + {top_alone}");
-    let data = bake(&scene).expect("bakes");
-    assert!(data.stack_depth <= 12, "{}", data.stack_depth);
-    let mut random = Random::new(12);
-    for _ in 0..100 {
-        let cone = Vec3::new(1.0, random.range(0.0, 0.024), random.range(0.0, 0.004)).normalize();
-        let used = stack_used(&data.view(), &ray(cone * -1e-3, cone));
-        assert!(used <= data.stack_depth);
-    }
-}
-
-#[test]
 fn an_empty_scene_bakes_and_is_missed() {
     let mut scene = empty_scene();
     scene.meshes.push(Mesh { name: "nothing".into(), ..Mesh::default() });

@@ -266,6 +266,29 @@ fn room_is_seen_and_lit_from_inside() {
     }
 }
 
+/// A box within a box that faces inwards: walls 0.2 thick, the lid of both left away where `open`.
+fn thick_walls(open: bool) -> Mesh {
+    let mut walls = shape::cuboid([4.4, 3.4, 6.4], 1);
+    let inner = shape::cuboid([4.0, 3.0, 6.0], 1);
+    let first = walls.positions.len() as u32;
+    walls.positions.extend(&inner.positions);
+    walls.normals.extend(inner.normals.iter().map(|n| -n));
+    walls.uvs.extend(&inner.uvs);
+    walls.triangles.extend(inner.triangles.iter().map(|&[a, b, c]| [b + first, a + first, c + first]));
+    let top = |t: &[u32; 3]| t.iter().all(|&i| walls.positions[i as usize].y > 1.4);
+    let kept = walls.triangles.iter().copied().filter(|t| !(open && top(t))).collect();
+    Mesh { triangles: kept, ..walls }
+}
+
+#[test]
+fn room_whose_walls_have_an_outside_is_seen_from_inside_and_a_trough_from_outside() {
+    let room = staged(thick_walls(false), Transform::default());
+    let eye = room.camera.eye;
+    assert!(eye.x.abs() < 2.0 && eye.y.abs() < 1.5 && eye.z.abs() < 3.0, "{eye}");
+    let trough = staged(thick_walls(true), Transform::default());
+    assert!(trough.camera.eye.length() > 5.0 && trough.objects.len() == 2, "{}", trough.camera.eye);
+}
+
 #[test]
 fn own_camera_and_lights_are_kept() {
     let mut scene = staging::bare_scene(Path::new("own.gltf"));

@@ -16,9 +16,18 @@ layout(constant_id = 1) const uint NODE_PAGES = 1u;
 layout(constant_id = 2) const uint TRIANGLE_PAGES = 1u;
 layout(constant_id = 3) const uint DATA_PAGES = 1u;
 layout(constant_id = 4) const uint PAGE_SHIFT = 31u;
+// Entries of each traversal stack that the scene's hierarchies need.
+layout(constant_id = 5) const uint STACK_DEPTH = 32u;
+// Choices of the scene, equal to what the Rust twins read in its header or data. Constants, so that a kernel is compiled
+// without the rest: devices that walk lanes in lockstep run both sides of every branch.
 // Bit n: a material of the scene has MODEL_* n. What no material has costs nothing: the driver cuts it away.
-layout(constant_id = 5) const uint MODELS_PRESENT = 0xffffffffu;
+layout(constant_id = 6) const uint MODELS_PRESENT = 0xffffffffu;
 #define HAS_MODEL(model) ((MODELS_PRESENT & (1u << (model))) != 0u)
+layout(constant_id = 7) const uint SCENE_INTEGRATOR = INTEGRATOR_LOCAL;
+layout(constant_id = 8) const uint SCENE_SAMPLING = SAMPLER_SOBOL;
+layout(constant_id = 9) const uint SCENE_FILTER = FILTER_BOX;
+layout(constant_id = 10) const bool SCENE_HAS_SPHERES = true;
+layout(constant_id = 11) const bool SCENE_HAS_AOVS = true;
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };

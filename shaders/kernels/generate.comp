@@ -12,7 +12,7 @@ void main() {
     slots[slot].high = uvec4(0u);
     PathState path = generate(batch, slot);
     levels[slot] = path;
-    if (header.aovs != 0u && path.sample_index == 0u) {
+    if (SCENE_HAS_AOVS && path.sample_index == 0u) {
         uint index = slot_pixel(batch, slot);
         aovs[index].depth = T_INFINITE;
         aovs[index].object = INVALID;

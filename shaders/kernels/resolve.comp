@@ -1,20 +1,27 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Adds every finished sample of the batch to its pixel.
+// Adds the finished samples of the batch to their pixel: one invocation a pixel, so nothing need be atomic.
 #include "kernels/bindings.glsl"
 #include "kernels/queues.glsl"
 #include "transport/generate.glsl"
 
 void main() {
-    uint slot = gl_GlobalInvocationID.x;
-    if (slot >= batch.slot_count) return;
-    uint index = slot_pixel(batch, slot);
-    uint clamped = 0u;
-    for (uint lane = 0u; lane < 4u; lane++) {
-        Fixed units = clamp_sample(slots[slot].low[lane], slots[slot].high[lane]);
-        ATOMIC_ADD_FIXED(film[index], lane, units)
-        clamped |= units.nan;
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= batch.pixel_count) return;
+    uint index = batch.first_pixel + pixel;
+    FilmSum sum = film[index];
+    uint clamped_count = 0u;
+    for (uint slot = pixel; slot < batch.slot_count; slot += batch.pixel_count) {
+        FilmSum seen = slots[slot];
+        uint clamped = 0u;
+        for (uint lane = 0u; lane < 4u; lane++) {
+            Fixed units = clamp_sample(seen.low[lane], seen.high[lane]);
+            add_fixed(sum, lane, units);
+            clamped |= units.nan;
+        }
+        clamped_count += clamped;
     }
-    if (clamped != 0u) atomicAdd(control.clamped_count, 1u);
+    film[index] = sum;
+    if (clamped_count != 0u) atomicAdd(control.clamped_count, clamped_count);
 }

@@ -51,7 +51,7 @@ Node load_node(uint index) {
 }
 #endif
 
-// Entries of the traversal stack; bake builds no hierarchy that needs more.
+// Entries of a traversal stack, one for the top level and one for meshes; bake builds no hierarchy that needs more.
 const uint STACK_SIZE = 32u;
 
 // A triangle in traversal order: what the watertight test needs, nothing else. 48 bytes.

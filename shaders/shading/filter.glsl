@@ -41,10 +41,10 @@ vec2 sample_filter_table(float u) {
 // `bake/filter`.
 FilterSample sample_filter(vec2 u) {
     float radius = header.filter_radius;
-    if (header.filter_kind == FILTER_BOX) {
+    if (SCENE_FILTER == FILTER_BOX) {
         return FilterSample(vec2((2.0 * u.x - 1.0) * radius, (2.0 * u.y - 1.0) * radius), 1.0);
     }
-    if (header.filter_kind == FILTER_TENT) {
+    if (SCENE_FILTER == FILTER_TENT) {
         return FilterSample(vec2(sample_tent(u.x) * radius, sample_tent(u.y) * radius), 1.0);
     }
     vec2 x = sample_filter_table(u.x);

@@ -60,9 +60,11 @@ vec2 box_interval(LevelRay ray, vec3 low, vec3 high) {
     return vec2(near, far);
 }
 
-// Four quantised planes of one word, child 0 in the lowest byte.
+// Four quantised planes of one word, child 0 in the lowest byte. By way of signed integers: many devices have no
+// instruction for the unsigned conversion.
 vec4 approx_planes(uint word) {
-    return vec4(float(word & 255u), float((word >> 8u) & 255u), float((word >> 16u) & 255u), float(word >> 24u));
+    ivec4 planes = ivec4(uvec4(word, word >> 8u, word >> 16u, word >> 24u) & 255u);
+    return vec4(planes);
 }
 
 // The bits that four children set if the ray meets their boxes. `meta`: their bytes of `child_meta`;

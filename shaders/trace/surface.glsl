@@ -147,7 +147,7 @@ vec3 surface_tangent(Surface surface) {
 // barycentric weights or, on a sphere, pushed onto it, and does not inherit the error of t.
 Surface surface_at(Ray ray, Hit hit) {
     Instance instance = load_instance(hit.instance);
-    if (instance.kind == KIND_SPHERE) {
+    if (SCENE_HAS_SPHERES && instance.kind == KIND_SPHERE) {
         return sphere_surface(instance, ray, hit);
     }
     return triangle_surface(instance, ray, hit);

@@ -1,9 +1,11 @@
 // The walk through the two-level hierarchy.
 //
-// One loop for both levels (Ylitie, Karras and Laine 2017, algorithm 1, without triangle postponing): a *group* is
-// (first inner child, hit bits of the children in the top byte | mask of inner children in the lowest byte), a
-// *primitive group* is (first primitive, one bit a primitive). What is not taken yet waits on the stack; a mesh is
-// walked on top of what waits in the top level. Each turn takes one node or one group off, so the loop ends.
+// Ylitie, Karras and Laine 2017, algorithm 1, without triangle postponing: a *group* is (first inner child, hit bits of
+// the children in the top byte | mask of inner children in the lowest byte), a *primitive group* is (first primitive, one
+// bit a primitive). What is not taken yet waits on a stack. Each turn takes one node or one primitive off, so the loops end.
+//
+// Three loops, one inside another, and not one loop with branches for both levels: devices that walk lanes in lockstep
+// run every branch of a loop's body on each turn, whether a lane takes it or not, so what is rare has a loop of its own.
 #ifndef TRACE_TRAVERSE_GLSL
 #define TRACE_TRAVERSE_GLSL
 #ifdef GONIO_FETCH
@@ -24,6 +26,21 @@ const uint GROUP_ROOT = 0x80000000u;
 bool is_closer(float t, uint instance, uint primitive, Hit hit) {
     return t < hit.t
         || (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)));
+}
+
+// Takes the nearest child out of a group: its index in the node array.
+uint take_child(inout uvec2 group, uint octant) {
+    uint bit = uint(findMSB(group.y));
+    group.y &= ~(1u << bit);
+    uint slot = (bit - 24u) ^ (octant & 255u);
+    return group.x + uint(bitCount(group.y & ~(0xffffffffu << slot)));
+}
+
+// Takes one primitive out of a primitive group: its index in its array.
+uint take_primitive(inout uvec2 group) {
+    uint bit = uint(findMSB(group.y));
+    group.y &= ~(1u << bit);
+    return group.x + bit;
 }
 
 // Tests triangle `index` of the array; `hit` becomes the closer of both.
@@ -55,92 +72,86 @@ void test_sphere(Ray ray, LevelRay level, uint instance, inout Hit hit) {
     }
 }
 
-// The closest hit, or with `shadow` any hit of an instance that casts a shadow.
-// `shadow` is a constant wherever this is called: drivers inline it twice, each time with half its branches.
-Hit traverse(Ray ray, bool shadow) {
-    Hit hit = Hit(ray.t_max, 0.0, 0.0, INVALID, 0u, 0u, 0u, 0u);
-    if (header.top_root == INVALID || !within_reach(ray.origin)) {
-        return hit;
-    }
-    uvec2 stack[STACK_SIZE];
+// Walks the mesh of `instance` below `root`; `level` is the ray in its object space, `hit` becomes the closer of it and
+// what is found. With `any` the first hit ends the walk.
+void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inout Hit hit) {
+    uvec2 stack[STACK_DEPTH];
     uint height = 0u;
-    LevelRay level = prepare_ray(ray.origin, ray.direction);
-    float margin = header.top_margin;
-    // The instance whose mesh is walked, and the height of the stack below it; INVALID and 0 in the top level.
-    uint instance = INVALID;
-    uint floor_ = 0u;
-    uvec2 group = uvec2(header.top_root, GROUP_ROOT);
-    uvec2 primitives;
+    uvec2 group = uvec2(root, GROUP_ROOT);
     bool walking = true;
     do {
+        uint index = take_child(group, level.octant);
         if (group.y > GROUP_EMPTY) {
-            uint bit = uint(findMSB(group.y));
-            uint slot = (bit - 24u) ^ (level.octant & 255u);
-            uint index = group.x + uint(bitCount(group.y & ~(0xffffffffu << slot)));
-            group.y &= ~(1u << bit);
-            if (group.y > GROUP_EMPTY) {
-                stack[height] = group;
-                height += 1u;
-            }
-            Node node = load_node(index);
-            uint hits = approx_intersect_node(node, level, margin, hit.t);
-            group = uvec2(node.child_base, (hits & 0xff000000u) | (node.exponents_imask >> 24u));
-            primitives = uvec2(node.primitive_base, hits & GROUP_EMPTY);
-        } else {
-            // Instances that waited while another one's mesh was walked.
-            primitives = group;
-            group = uvec2(0u);
+            stack[height] = group;
+            height += 1u;
         }
-
-        while (primitives.y != 0u) {
-            uint bit = uint(findMSB(primitives.y));
-            primitives.y &= ~(1u << bit);
-            if (instance != INVALID) {
-                test_triangle(ray, level, instance, primitives.x + bit, hit);
-            } else {
-                uint id = load_top_instance(primitives.x + bit);
-                Instance record = load_instance(id);
-                vec3 origin = object_origin(record, ray.origin);
-                if (!(shadow && (record.flags & INSTANCE_NO_SHADOW) != 0u) && within_reach(origin)) {
-                    LevelRay inner = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
-                    if (record.kind == KIND_SPHERE) {
-                        test_sphere(ray, inner, id, hit);
-                    } else {
-                        if (group.y > GROUP_EMPTY) {
-                            stack[height] = group;
-                            height += 1u;
-                        }
-                        if (primitives.y != 0u) {
-                            stack[height] = primitives;
-                            height += 1u;
-                        }
-                        instance = id;
-                        floor_ = height;
-                        level = inner;
-                        margin = MESH_MARGIN;
-                        group = uvec2(record.root, GROUP_ROOT);
-                        primitives.y = 0u;
-                    }
-                }
+        Node node = load_node(index);
+        uint hits = approx_intersect_node(node, level, MESH_MARGIN, hit.t);
+        group = uvec2(node.child_base, (hits & 0xff000000u) | (node.exponents_imask >> 24u));
+        uvec2 triangles = uvec2(node.primitive_base, hits & GROUP_EMPTY);
+        do {
+            if (triangles.y != 0u) {
+                test_triangle(ray, level, instance, take_primitive(triangles), hit);
             }
-            if (shadow && hit.instance != INVALID) {
-                return hit;
-            }
-        }
-
+        } while (triangles.y != 0u);
         if (group.y <= GROUP_EMPTY) {
-            if (instance != INVALID && height == floor_) {
-                instance = INVALID;
-                floor_ = 0u;
-                level = prepare_ray(ray.origin, ray.direction);
-                margin = header.top_margin;
-            }
             walking = height != 0u;
             if (walking) {
                 height -= 1u;
                 group = stack[height];
             }
         }
+        walking = walking && !(any && hit.instance != INVALID);
+    } while (walking);
+}
+
+// The closest hit, or with `any` any hit of an instance that casts a shadow.
+// `any` is a constant wherever this is called: drivers inline it twice, each time with half its branches.
+Hit traverse(Ray ray, bool any) {
+    Hit hit = Hit(ray.t_max, 0.0, 0.0, INVALID, 0u, 0u, 0u, 0u);
+    if (header.top_root == INVALID || !within_reach(ray.origin)) {
+        return hit;
+    }
+    uvec2 stack[STACK_DEPTH];
+    uint height = 0u;
+    LevelRay world = prepare_ray(ray.origin, ray.direction);
+    uvec2 group = uvec2(header.top_root, GROUP_ROOT);
+    uvec2 instances = uvec2(0u);
+    bool walking = true;
+    do {
+        // Nodes until there is an instance.
+        do {
+            if (instances.y == 0u) {
+                if (group.y <= GROUP_EMPTY) {
+                    height -= 1u;
+                    group = stack[height];
+                }
+                uint index = take_child(group, world.octant);
+                if (group.y > GROUP_EMPTY) {
+                    stack[height] = group;
+                    height += 1u;
+                }
+                Node node = load_node(index);
+                uint hits = approx_intersect_node(node, world, header.top_margin, hit.t);
+                group = uvec2(node.child_base, (hits & 0xff000000u) | (node.exponents_imask >> 24u));
+                instances = uvec2(node.primitive_base, hits & GROUP_EMPTY);
+            }
+        } while (instances.y == 0u && (group.y > GROUP_EMPTY || height != 0u));
+
+        if (instances.y != 0u) {
+            uint id = load_top_instance(take_primitive(instances));
+            Instance record = load_instance(id);
+            vec3 origin = object_origin(record, ray.origin);
+            if (!(any && (record.flags & INSTANCE_NO_SHADOW) != 0u) && within_reach(origin)) {
+                LevelRay level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
+                if (SCENE_HAS_SPHERES && record.kind == KIND_SPHERE) {
+                    test_sphere(ray, level, id, hit);
+                } else {
+                    walk_mesh(ray, level, id, record.root, any, hit);
+                }
+            }
+        }
+        walking = (instances.y != 0u || group.y > GROUP_EMPTY || height != 0u) && !(any && hit.instance != INVALID);
     } while (walking);
     return hit;
 }

@@ -10,7 +10,7 @@
 
 // The key of a path's random numbers: they depend on nothing else.
 SampleKey sample_key(uint pixel, uint sample_index, uint path_id) {
-    return SampleKey(header.sampling, header.strata, header.seed, pixel, sample_index, path_id);
+    return SampleKey(SCENE_SAMPLING, header.strata, header.seed, pixel, sample_index, path_id);
 }
 
 // Pixel of a slot, counted row by row in the crop.

@@ -40,18 +40,19 @@ void shade(PathState incoming, Hit hit) {
         return;
     }
     Surface surface = surface_at(path.ray, hit);
-    Material material = material_at(path.ray.direction, hit, surface);
-    if (header.aovs != 0u && path.path_id == 0u) {
+    uint named = surface.material;
+    Material material = material_at(path.ray.direction, hit, key, surface);
+    if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
-        add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
+        add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
     if (header.integrator == INTEGRATOR_PATH) {
         shade_path(path, key, hit, surface, material);
         return;
     }
     shade_local(path, key, surface, material);
-    if (header.integrator == INTEGRATOR_WHITTED && path.depth < header.max_depth) {
+    if (SCENE_INTEGRATOR == INTEGRATOR_WHITTED && path.depth < header.max_depth) {
         shade_whitted(path, surface, material);
     }
 }

@@ -4,7 +4,7 @@
 //! here from the exact bounds of what lies below, and a tree too deep for the traversal stack is replaced by a
 //! median split.
 
-use crate::layout::Node;
+use crate::layout::{Node, STACK_SIZE};
 use glam::{DVec3, Vec3};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -97,8 +97,14 @@ impl Tree {
         self.nodes.len()
     }
 
-    /// A tree of good quality, of any depth. `boxes`: finite, at least one.
+    /// A tree of good quality that fits the traversal stack. `boxes`: finite, at least one.
     pub fn build(boxes: &[Bounds], leaf: u32) -> Self {
+        let tree = Self::by_surface_area(boxes, leaf);
+        if tree.stack_depth() <= STACK_SIZE { tree } else { Self::median_split(boxes, leaf) }
+    }
+
+    /// A tree of good quality, of any depth.
+    fn by_surface_area(boxes: &[Bounds], leaf: u32) -> Self {
         let boxes: Vec<Aabb> = boxes.iter().map(|b| Aabb::new(b.min.into(), b.max.into())).collect();
         let preset = BvhBuildParams::medium_build();
         // The steps of obvhs's `build_cwbvh` but for its debug validation, which panics on deep trees.
@@ -126,7 +132,7 @@ impl Tree {
 
     /// A tree of the least depth: each node halves its largest part, by the median along its longest axis, until it
     /// has eight.
-    pub fn median_split(boxes: &[Bounds], leaf: u32) -> Self {
+    fn median_split(boxes: &[Bounds], leaf: u32) -> Self {
         let mut tree = Self { nodes: vec![TreeNode::default()], order: Vec::with_capacity(boxes.len()) };
         let mut waiting = vec![(0usize, (0..boxes.len() as u32).collect::<Vec<u32>>())];
         while let Some((index, primitives)) = waiting.pop() {
@@ -166,31 +172,17 @@ impl Tree {
         tree
     }
 
-    /// Entries of the traversal stack that the worst ray needs. `below`: what a primitive needs on top, by its place in
-    /// the order (0 for triangles, which are not walked).
-    ///
-    /// A child leaves one group behind if it has a sibling (some octant visits it first). Entering a primitive leaves
-    /// the node's inner children behind, if any, and its primitives at lower places, if any.
-    pub fn stack_depth(&self, below: impl Fn(u32) -> Option<u32>) -> u32 {
+    /// Entries of the traversal stack that the worst ray needs: a child leaves one group behind if it has a sibling
+    /// (some octant visits it first).
+    pub fn stack_depth(&self) -> u32 {
         let mut need = vec![0u32; self.nodes.len()];
         for (index, node) in self.nodes.iter().enumerate().rev() {
             let siblings = u32::from(node.inner_mask.count_ones() > 1);
-            let inner = u32::from(node.inner_mask != 0);
-            let mut worst = 0;
-            for child in node.children() {
-                match child {
-                    Child::Empty => {}
-                    Child::Inner(child) => worst = worst.max(siblings + need[child as usize]),
-                    Child::Leaf(first, count) => {
-                        for place in first..first + count {
-                            if let Some(mesh) = below(place) {
-                                worst = worst.max(inner + u32::from(place > node.primitive_base) + mesh);
-                            }
-                        }
-                    }
-                }
-            }
-            need[index] = worst;
+            let inner = node.children().filter_map(|child| match child {
+                Child::Inner(child) => Some(siblings + need[child as usize]),
+                Child::Empty | Child::Leaf(..) => None,
+            });
+            need[index] = inner.max().unwrap_or(0);
         }
         need.first().copied().unwrap_or(0)
     }
@@ -316,7 +308,6 @@ fn pack_node(node: &TreeNode, bounds: &Bounds, children: &[Bounds; 8], node_base
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layout::STACK_SIZE;
 
     /// Clusters of four boxes that shrink geometrically towards the origin, along x.
     fn cascade(clusters: u32, factor: f32) -> Vec<Bounds> {
@@ -336,10 +327,10 @@ mod tests {
     #[test]
     fn a_tree_too_deep_for_the_stack_is_shallow_after_a_median_split() {
         let boxes = cascade(800, 0.9);
-        let deep = Tree::build(&boxes, MESH_LEAF);
-        assert!(deep.stack_depth(|_| None) > STACK_SIZE, "{}", deep.stack_depth(|_| None));
-        let flat = Tree::median_split(&boxes, MESH_LEAF);
-        assert!(flat.stack_depth(|_| None) <= 5, "{}", flat.stack_depth(|_| None));
+        let deep = Tree::by_surface_area(&boxes, MESH_LEAF);
+        assert!(deep.stack_depth() > STACK_SIZE, "{}", deep.stack_depth());
+        let flat = Tree::build(&boxes, MESH_LEAF);
+        assert!(flat.stack_depth() <= 5, "{}", flat.stack_depth());
         let mut order = flat.order.clone();
         order.sort_unstable();
         assert_eq!(order, (0..boxes.len() as u32).collect::<Vec<_>>());

@@ -37,7 +37,7 @@ pub struct SceneData {
     pub texels: Vec<u32>,
     /// Filter tables, the sRGB decoding table (256 floats, first) and the like.
     pub tables: Vec<f32>,
-    /// Entries the traversal stack needs in the worst case (top level + deepest mesh).
+    /// Entries a traversal stack needs in the worst case: the deeper of the top level and the deepest mesh.
     pub stack_depth: u32,
     /// Dropped primitives and the like; printed once.
     pub warnings: Vec<String>,

@@ -19,8 +19,6 @@ pub struct BakedMesh {
     pub triangles: Vec<Triangle>,
     /// Boxes of the triangles that were kept, as the tree numbers them.
     pub boxes: Vec<Bounds>,
-    /// What stands in `Triangle` for each of those.
-    kept: Vec<Triangle>,
     pub tree: Tree,
     pub bounds: Option<Bounds>,
     /// Coordinates are stored divided by this power of two, so that the largest is in 1..2 and the strict arithmetic of
@@ -33,21 +31,6 @@ impl BakedMesh {
     /// Whether a ray can hit anything of it.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
-    }
-
-    /// Entries of the traversal stack its worst ray needs.
-    pub fn stack_depth(&self) -> u32 {
-        self.tree.stack_depth(|_| None)
-    }
-
-    /// Replaces the hierarchy by the least deep one.
-    pub fn flatten_tree(&mut self) {
-        self.set_tree(Tree::median_split(&self.boxes, MESH_LEAF));
-    }
-
-    fn set_tree(&mut self, tree: Tree) {
-        self.triangles = tree.order.iter().map(|&i| self.kept[i as usize]).collect();
-        self.tree = tree;
     }
 }
 
@@ -68,6 +51,7 @@ pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId) -> BakedMesh {
     let positions: Vec<Vec3> = mesh.positions.iter().map(|&p| scaled(p, unit)).collect();
     let mut builder = VertexBuilder::new(mesh, &positions);
     let (mut not_finite, mut flat) = (0u64, 0u64);
+    let mut kept = Vec::new();
     for (primitive, &corners) in mesh.triangles.iter().enumerate() {
         let [v0, v1, v2] = corners.map(|i| positions[i as usize]);
         let normal = face_normal(v0, v1, v2);
@@ -80,7 +64,7 @@ pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId) -> BakedMesh {
             flat += 1;
         } else {
             baked.boxes.push(Bounds::EMPTY.with(v0).with(v1).with(v2));
-            baked.kept.push(Triangle { v0, v1, v2, primitive: primitive as u32, ..Triangle::default() });
+            kept.push(Triangle { v0, v1, v2, primitive: primitive as u32, ..Triangle::default() });
         }
     }
     baked.vertices = builder.vertices;
@@ -90,10 +74,10 @@ pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId) -> BakedMesh {
             mesh.name
         ));
     }
-    if !baked.kept.is_empty() {
+    if !kept.is_empty() {
         baked.bounds = Some(baked.boxes.iter().fold(Bounds::EMPTY, |b, &c| b.union(c)));
-        let tree = Tree::build(&baked.boxes, MESH_LEAF);
-        baked.set_tree(tree);
+        baked.tree = Tree::build(&baked.boxes, MESH_LEAF);
+        baked.triangles = baked.tree.order.iter().map(|&i| kept[i as usize]).collect();
     }
     baked
 }

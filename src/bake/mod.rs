@@ -13,6 +13,7 @@ pub mod filter;
 mod geometry;
 mod instance;
 mod light;
+mod measured;
 mod mip;
 mod model;
 mod scene;
@@ -39,9 +40,6 @@ pub enum BakeError {
     /// The loop over a material's textures has a bound.
     #[error("material \"{name}\" has {count} textures; 16 are possible")]
     Textures { name: String, count: usize },
-    /// A model whose shading has not landed yet.
-    #[error("material \"{name}\": its model cannot be drawn yet")]
-    Unfinished { name: String },
     /// More than a random number can tell apart.
     #[error("{count} triangles and lights glow; at most {most} are possible under direct and path")]
     Emitters { count: usize, most: usize },

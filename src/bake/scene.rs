@@ -20,8 +20,6 @@ use rayon::prelude::*;
 
 /// k of the film's fixed point (DESIGN, strict rule 8): 2^-22 of a film unit is the smallest step.
 const FILM_BITS: i32 = 22;
-/// A hierarchy that needs more entries than this is rebuilt when the scene does not fit the stack.
-const DEEP_PART: u32 = 12;
 
 /// Bakes a scene whose indices are valid (`scene::load` guarantees it).
 pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
@@ -57,7 +55,7 @@ fn traced(scene: &Scene) -> bool {
 /// Bakes all materials, and one more where an object or face names none. Returns the id of that one.
 fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, BakeError> {
     for material in &scene.materials {
-        let mut baked = bake_material(material, traced(scene), &mut data.tables)?;
+        let mut baked = bake_material(material, &scene.tables, traced(scene), &mut data.tables)?;
         bind_textures(material, &mut baked, data)?;
         data.materials.push(baked);
     }
@@ -67,7 +65,7 @@ fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, Bak
     };
     let default = MaterialId(scene.materials.len() as u32);
     if scene.objects.iter().any(nameless) {
-        data.materials.push(bake_material(&Material::grey("default"), traced(scene), &mut data.tables)?);
+        data.materials.push(bake_material(&Material::grey("default"), &[], traced(scene), &mut data.tables)?);
     }
     bake_blends(&scene.materials, &mut data.materials)?;
     check_count("table entries", data.tables.len())?;
@@ -208,26 +206,19 @@ fn instance_shadow(scene: &Scene, object: &Object) -> (bool, Option<String>) {
     (casts, warning)
 }
 
-/// Builds the top level and lays all hierarchies out in one array. Rebuilds what is too deep for the stack.
-fn build_hierarchy(mut parts: Parts, data: &mut SceneData) -> Result<(), BakeError> {
+/// Builds the top level and lays all hierarchies out in one array.
+fn build_hierarchy(parts: Parts, data: &mut SceneData) -> Result<(), BakeError> {
     data.header.top_margin = top_margin(parts.growth);
     data.header.top_root = INVALID;
     if parts.shown.is_empty() {
         return Ok(());
     }
     let boxes: Vec<Bounds> = parts.shown.iter().map(|&(_, world)| world).collect();
-    let mut top = Tree::build(&boxes, TOP_LEAF);
-    data.stack_depth = total_depth(&top, &parts);
+    let top = Tree::build(&boxes, TOP_LEAF);
+    let meshes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.stack_depth());
+    data.stack_depth = meshes.fold(top.stack_depth(), u32::max);
     if data.stack_depth > STACK_SIZE {
-        let deep = |mesh: &&mut BakedMesh| mesh.stack_depth() > DEEP_PART;
-        parts.meshes.iter_mut().flatten().filter(deep).for_each(BakedMesh::flatten_tree);
-        if top.stack_depth(|_| Some(0)) > DEEP_PART {
-            top = Tree::median_split(&boxes, TOP_LEAF);
-        }
-        data.stack_depth = total_depth(&top, &parts);
-        if data.stack_depth > STACK_SIZE {
-            return Err(BakeError::Deep(data.stack_depth));
-        }
+        return Err(BakeError::Deep(data.stack_depth));
     }
 
     let triangles = parts.meshes.iter().flatten().map(|mesh| mesh.triangles.len()).sum();
@@ -253,13 +244,6 @@ fn build_hierarchy(mut parts: Parts, data: &mut SceneData) -> Result<(), BakeErr
         instance.root = mesh.map_or(INVALID, |id| roots[id]);
     }
     Ok(())
-}
-
-/// Entries of the stack that the worst ray needs, top level and mesh together.
-fn total_depth(top: &Tree, parts: &Parts) -> u32 {
-    let meshes: Vec<u32> = parts.meshes.iter().map(|mesh| mesh.as_ref().map_or(0, BakedMesh::stack_depth)).collect();
-    // A sphere is tested on the spot.
-    top.stack_depth(|place| parts.shown[top.order[place as usize] as usize].0.map(|mesh| meshes[mesh]))
 }
 
 /// All of the header that does not depend on the arrays.

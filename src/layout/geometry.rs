@@ -29,7 +29,7 @@ pub struct Node {
     pub max_z: [u32; 2],
 }
 
-/// Entries of the traversal stack; bake builds no hierarchy that needs more.
+/// Entries of a traversal stack, one for the top level and one for meshes; bake builds no hierarchy that needs more.
 pub const STACK_SIZE: u32 = 32;
 
 /// A triangle in traversal order: what the watertight test needs, nothing else. 48 bytes.

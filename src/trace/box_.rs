@@ -66,7 +66,8 @@ pub fn box_interval(ray: &LevelRay, low: Vec3, high: Vec3) -> Vec2 {
     Vec2::new(near, far)
 }
 
-/// Four quantised planes of one word, child 0 in the lowest byte.
+/// Four quantised planes of one word, child 0 in the lowest byte. By way of signed integers: many devices have no
+/// instruction for the unsigned conversion.
 #[inline(always)]
 fn approx_planes(word: u32) -> Vec4 {
     Vec4::new((word & 255) as f32, ((word >> 8) & 255) as f32, ((word >> 16) & 255) as f32, (word >> 24) as f32)

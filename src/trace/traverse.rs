@@ -1,9 +1,11 @@
 //! The walk through the two-level hierarchy.
 //!
-//! One loop for both levels (Ylitie, Karras and Laine 2017, algorithm 1, without triangle postponing): a *group* is
-//! (first inner child, hit bits of the children in the top byte | mask of inner children in the lowest byte), a
-//! *primitive group* is (first primitive, one bit a primitive). What is not taken yet waits on the stack; a mesh is
-//! walked on top of what waits in the top level. Each turn takes one node or one group off, so the loop ends.
+//! Ylitie, Karras and Laine 2017, algorithm 1, without triangle postponing: a *group* is (first inner child, hit bits of
+//! the children in the top byte | mask of inner children in the lowest byte), a *primitive group* is (first primitive, one
+//! bit a primitive). What is not taken yet waits on a stack. Each turn takes one node or one primitive off, so the loops end.
+//!
+//! Three loops, one inside another, and not one loop with branches for both levels: devices that walk lanes in lockstep
+//! run every branch of a loop's body on each turn, whether a lane takes it or not, so what is rare has a loop of its own.
 
 use super::box_::{MESH_MARGIN, approx_intersect_node};
 use super::ray::{LevelRay, object_origin, prepare_ray, transform_vector, within_reach};
@@ -27,10 +29,21 @@ fn is_closer(t: f32, instance: u32, primitive: u32, hit: &Hit) -> bool {
     t < hit.t || (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)))
 }
 
-/// The index of the highest bit of `x`, which is not 0.
+/// Takes the nearest child out of a group: its index in the node array.
 #[inline(always)]
-fn highest_bit(x: u32) -> u32 {
-    31 - x.leading_zeros()
+fn take_child(group: &mut UVec2, octant: u32) -> u32 {
+    let bit = 31 - group.y.leading_zeros();
+    group.y &= !(1 << bit);
+    let slot = (bit - 24) ^ (octant & 255);
+    group.x + (group.y & !(0xffff_ffff << slot)).count_ones()
+}
+
+/// Takes one primitive out of a primitive group: its index in its array.
+#[inline(always)]
+fn take_primitive(group: &mut UVec2) -> u32 {
+    let bit = 31 - group.y.leading_zeros();
+    group.y &= !(1 << bit);
+    group.x + bit
 }
 
 /// Tests triangle `index` of the array; `hit` becomes the closer of both.
@@ -64,90 +77,95 @@ fn test_sphere(ray: &Ray, level: &LevelRay, instance: u32, hit: &mut Hit) {
     }
 }
 
-/// The closest hit, or with `shadow` any hit of an instance that casts a shadow.
+/// Walks the mesh of `instance` below `root`; `level` is the ray in its object space, `hit` becomes the closer of it and
+/// what is found. With `any` the first hit ends the walk.
 /// Rust only: `deepest` becomes the number of stack entries in use at the worst moment.
 #[inline(always)]
-fn traverse(scene: &SceneView, ray: &Ray, shadow: bool, deepest: &mut u32) -> Hit {
+#[allow(clippy::too_many_arguments, reason = "to read like its twin")]
+fn walk_mesh(
+    scene: &SceneView,
+    ray: &Ray,
+    level: &LevelRay,
+    instance: u32,
+    root: u32,
+    any: bool,
+    hit: &mut Hit,
+    deepest: &mut u32,
+) {
+    let mut stack = [UVec2::ZERO; STACK_SIZE as usize];
+    let mut height: u32 = 0;
+    let mut group = UVec2::new(root, GROUP_ROOT);
+    let mut walking = true;
+    while walking {
+        let index = take_child(&mut group, level.octant);
+        if group.y > GROUP_EMPTY {
+            push(&mut stack, &mut height, group, deepest);
+        }
+        let node = load_node(scene, index);
+        let hits = approx_intersect_node(&node, level, MESH_MARGIN, hit.t);
+        group = UVec2::new(node.child_base, (hits & 0xff00_0000) | (node.exponents_imask >> 24));
+        let mut triangles = UVec2::new(node.primitive_base, hits & GROUP_EMPTY);
+        while triangles.y != 0 {
+            test_triangle(scene, ray, level, instance, take_primitive(&mut triangles), hit);
+        }
+        if group.y <= GROUP_EMPTY {
+            walking = height != 0;
+            if walking {
+                height -= 1;
+                group = stack[height as usize];
+            }
+        }
+        walking = walking && !(any && hit.instance != INVALID);
+    }
+}
+
+/// The closest hit, or with `any` any hit of an instance that casts a shadow.
+/// Rust only: `deepest` becomes the number of entries of either stack in use at the worst moment.
+#[inline(always)]
+fn traverse(scene: &SceneView, ray: &Ray, any: bool, deepest: &mut u32) -> Hit {
     let mut hit = Hit { t: ray.t_max, instance: INVALID, ..Hit::default() };
     if scene.header.top_root == INVALID || !within_reach(ray.origin) {
         return hit;
     }
     let mut stack = [UVec2::ZERO; STACK_SIZE as usize];
     let mut height: u32 = 0;
-    let mut level = prepare_ray(ray.origin, ray.direction);
-    let mut margin = scene.header.top_margin;
-    // The instance whose mesh is walked, and the height of the stack below it; INVALID and 0 in the top level.
-    let mut instance = INVALID;
-    let mut floor: u32 = 0;
+    let world = prepare_ray(ray.origin, ray.direction);
     let mut group = UVec2::new(scene.header.top_root, GROUP_ROOT);
-    let mut primitives;
-    loop {
-        if group.y > GROUP_EMPTY {
-            let bit = highest_bit(group.y);
-            let slot = (bit - 24) ^ (level.octant & 255);
-            let index = group.x + (group.y & !(0xffff_ffff << slot)).count_ones();
-            group.y &= !(1 << bit);
+    let mut instances = UVec2::ZERO;
+    let mut walking = true;
+    while walking {
+        // Nodes until there is an instance.
+        while instances.y == 0 && (group.y > GROUP_EMPTY || height != 0) {
+            if group.y <= GROUP_EMPTY {
+                height -= 1;
+                group = stack[height as usize];
+            }
+            let index = take_child(&mut group, world.octant);
             if group.y > GROUP_EMPTY {
                 push(&mut stack, &mut height, group, deepest);
             }
             let node = load_node(scene, index);
-            let hits = approx_intersect_node(&node, &level, margin, hit.t);
+            let hits = approx_intersect_node(&node, &world, scene.header.top_margin, hit.t);
             group = UVec2::new(node.child_base, (hits & 0xff00_0000) | (node.exponents_imask >> 24));
-            primitives = UVec2::new(node.primitive_base, hits & GROUP_EMPTY);
-        } else {
-            // Instances that waited while another one's mesh was walked.
-            primitives = group;
-            group = UVec2::ZERO;
+            instances = UVec2::new(node.primitive_base, hits & GROUP_EMPTY);
         }
 
-        while primitives.y != 0 {
-            let bit = highest_bit(primitives.y);
-            primitives.y &= !(1 << bit);
-            if instance != INVALID {
-                test_triangle(scene, ray, &level, instance, primitives.x + bit, &mut hit);
-            } else {
-                let id = load_top_instance(scene, primitives.x + bit);
-                let record = load_instance(scene, id);
-                let origin = object_origin(&record, ray.origin);
-                if !(shadow && (record.flags & INSTANCE_NO_SHADOW) != 0) && within_reach(origin) {
-                    let inner = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
-                    if record.kind == KIND_SPHERE {
-                        test_sphere(ray, &inner, id, &mut hit);
-                    } else {
-                        if group.y > GROUP_EMPTY {
-                            push(&mut stack, &mut height, group, deepest);
-                        }
-                        if primitives.y != 0 {
-                            push(&mut stack, &mut height, primitives, deepest);
-                        }
-                        instance = id;
-                        floor = height;
-                        level = inner;
-                        margin = MESH_MARGIN;
-                        group = UVec2::new(record.root, GROUP_ROOT);
-                        primitives.y = 0;
-                    }
+        if instances.y != 0 {
+            let id = load_top_instance(scene, take_primitive(&mut instances));
+            let record = load_instance(scene, id);
+            let origin = object_origin(&record, ray.origin);
+            if !(any && (record.flags & INSTANCE_NO_SHADOW) != 0) && within_reach(origin) {
+                let level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
+                if record.kind == KIND_SPHERE {
+                    test_sphere(ray, &level, id, &mut hit);
+                } else {
+                    walk_mesh(scene, ray, &level, id, record.root, any, &mut hit, deepest);
                 }
             }
-            if shadow && hit.instance != INVALID {
-                return hit;
-            }
         }
-
-        if group.y <= GROUP_EMPTY {
-            if instance != INVALID && height == floor {
-                instance = INVALID;
-                floor = 0;
-                level = prepare_ray(ray.origin, ray.direction);
-                margin = scene.header.top_margin;
-            }
-            if height == 0 {
-                return hit;
-            }
-            height -= 1;
-            group = stack[height as usize];
-        }
+        walking = (instances.y != 0 || group.y > GROUP_EMPTY || height != 0) && !(any && hit.instance != INVALID);
     }
+    hit
 }
 
 /// Puts a group aside. Bake has proved that the stack is high enough.

@@ -47,11 +47,12 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
         return;
     }
     let mut surface = surface_at(scene, &path.ray, hit);
-    let material = material_at(scene, path.ray.direction, hit, &mut surface);
+    let named = surface.material;
+    let material = material_at(scene, path.ray.direction, hit, key, &mut surface);
     if scene.header.aovs != 0 && path.path_id == 0 {
         let albedo = albedo_material(&material);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
-        add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
+        add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
     if scene.header.integrator == INTEGRATOR_PATH {
         shade_path(scene, &path, key, hit, &surface, &material, queues);

@@ -11,6 +11,10 @@ use std::ops::Range;
 const BATCH_GPU: u32 = 1 << 17;
 const BATCH_CPU: u32 = 1 << 16;
 
+/// Samples of a pixel in a batch at most: resolve adds them up in one loop, and lavapipe of Mesa 22 ends all loops of an
+/// invocation after 65,535 turns.
+const BATCH_SAMPLES: u32 = 4096;
+
 /// Entries of the queues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct QueuePlan {
@@ -113,7 +117,7 @@ fn bands_of(crop: Rect, pixels: u64) -> Vec<Rect> {
 pub fn batches(band: Rect, samples: Range<u32>, slots: u32) -> impl Iterator<Item = Batch> {
     let pixels = band.width * band.height;
     let pixel_step = pixels.div_ceil(pixels.div_ceil(slots).max(1)).max(1);
-    let sample_step = (slots / pixel_step).max(1);
+    let sample_step = (slots / pixel_step).clamp(1, BATCH_SAMPLES);
     samples.clone().step_by(sample_step as usize).flat_map(move |first_sample| {
         let sample_count = sample_step.min(samples.end - first_sample);
         (0..pixels).step_by(pixel_step as usize).map(move |first_pixel| {

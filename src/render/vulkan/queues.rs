@@ -7,7 +7,8 @@ use super::memory::{Buffer, Place};
 use super::plan::QueuePlan;
 use super::record::Recorder;
 use super::scene::SceneBuffers;
-use crate::layout::{Batch, Control, DispatchArguments};
+use crate::bake::SceneData;
+use crate::layout::{Batch, Control, DispatchArguments, KIND_SPHERE};
 use crate::shaders;
 use std::mem::offset_of;
 
@@ -43,14 +44,30 @@ const NAMES: Stages<&str> = Stages {
     resolve: "resolve",
 };
 
+/// Specialisation constants that say what the scene uses (`shaders/kernels/bindings.glsl`).
+fn scene_constants(data: &SceneData) -> [(u32, u32); 7] {
+    let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
+    let models = data.materials.iter().fold(0, |mask, material| mask | 1 << material.model);
+    [
+        (5, data.stack_depth.max(1)),
+        (6, models),
+        (7, data.header.integrator),
+        (8, data.header.sampling),
+        (9, data.header.filter_kind),
+        (10, u32::from(spheres)),
+        (11, data.header.aovs),
+    ]
+}
+
 /// The compiled kernels of a scene.
 pub struct Kernels(Stages<Kernel>);
 
 impl Kernels {
-    /// Compiles for the scene's way of fetching, its pages, and a traversal stack of `stack_depth` entries.
-    pub fn new(context: &Context, scene: &SceneBuffers, stack_depth: u32) -> Result<Kernels, VulkanError> {
-        let mut constants = vec![(0, WORKGROUP), (5, stack_depth)];
+    /// Compiles for the scene's way of fetching, its pages and what it uses, and for nothing else.
+    pub fn new(context: &Context, scene: &SceneBuffers, data: &SceneData) -> Result<Kernels, VulkanError> {
+        let mut constants = vec![(0, WORKGROUP)];
         constants.extend(scene.constants());
+        constants.extend(scene_constants(data));
         let kernels = NAMES.try_map(|name| {
             let words = shaders::kernel(name, scene.fetch())
                 .ok_or_else(|| VulkanError::Device(format!("this program was built without the kernel {name}")))?;
@@ -158,7 +175,7 @@ impl Queues {
 
     /// Records: adds a finished batch to the film.
     pub fn record_resolve<'r>(&'r self, r: &Recorder<'r>, batch: &Batch) {
-        r.dispatch(&self.stages.resolve, bytemuck::bytes_of(batch), batch.slot_count.div_ceil(WORKGROUP));
+        r.dispatch(&self.stages.resolve, bytemuck::bytes_of(batch), batch.pixel_count.div_ceil(WORKGROUP));
         r.barrier();
     }
 

@@ -85,7 +85,7 @@ impl VulkanRenderer {
         let Ok(choice) = options.device.as_deref().unwrap_or("auto").parse::<DeviceChoice>();
         let mut context = Context::new(&choice, options.validate)?;
         let scene = SceneBuffers::upload(&mut context, data, options.fetch, options.page_limit)?;
-        let kernels = Kernels::new(&context, &scene, data.stack_depth)?;
+        let kernels = Kernels::new(&context, &scene, data)?;
         let VulkanOptions { chunk, page_limit, .. } = options;
         let (header, pace) = (data.header, Pace::new(1));
         Ok(VulkanRenderer { context, header, scene, kernels, chunk, page_limit, queues: None, pace })

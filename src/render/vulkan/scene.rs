@@ -117,8 +117,6 @@ pub struct SceneBuffers {
     sets: [Vec<Buffer>; 3],
     shift: u32,
     fetch: Fetch,
-    /// Bit n: a material has model n.
-    models: u32,
 }
 
 impl SceneBuffers {
@@ -153,8 +151,7 @@ impl SceneBuffers {
                 upload_part(context, buffers, page_words * WORD, u64::from(*first) * WORD, bytes)?;
             }
         }
-        let models = data.materials.iter().fold(0, |mask, material| mask | 1 << material.model);
-        Ok(SceneBuffers { header, sets: buffers, shift: plan.shift, fetch, models })
+        Ok(SceneBuffers { header, sets: buffers, shift: plan.shift, fetch })
     }
 
     pub fn fetch(&self) -> Fetch {
@@ -171,10 +168,10 @@ impl SceneBuffers {
         &self.sets[set]
     }
 
-    /// Specialisation constants 1 to 5.
-    pub fn constants(&self) -> [(u32, u32); 5] {
+    /// Specialisation constants 1 to 4.
+    pub fn constants(&self) -> [(u32, u32); 4] {
         let [nodes, triangles, data] = self.page_counts().map(|count| count as u32);
-        [(1, nodes), (2, triangles), (3, data), (4, self.shift), (5, self.models)]
+        [(1, nodes), (2, triangles), (3, data), (4, self.shift)]
     }
 
     /// The buffers of a binding of set 0.

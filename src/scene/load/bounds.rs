@@ -6,14 +6,27 @@ use glam::DVec3;
 /// Points computed exactly; beyond this the corners of the meshes' boxes stand for them.
 const EXACT_MAX: usize = 1 << 23;
 
+/// What a scene encloses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Room {
+    /// It is an object, to be seen from outside.
+    None,
+    /// A side may be missing, as in a stage set.
+    Open,
+    /// Doors and windows at most.
+    Closed,
+}
+
+/// Directions in which `room` looks around, and those of them that must end at a front (a room has doors and windows).
+const WAYS: usize = 64;
+const ROOM_FRONTS: usize = 58;
+
 /// The extent of all objects, in world space.
 pub(super) struct Bounds {
     points: Vec<DVec3>,
     low: DVec3,
     high: DVec3,
     radius: f64,
-    /// Volume enclosed by the triangles, as seen from the centre; negative where they face inwards.
-    volume: f64,
 }
 
 impl Bounds {
@@ -30,7 +43,7 @@ impl Bounds {
         // What is smaller than the rounding of its place cannot be looked at from its own distance; a single point has none.
         let radius = radius.max(centre.abs().max_element() * 1e-5);
         let radius = if radius > 0.0 { radius } else { 1.0 };
-        Self { points, low, high, radius, volume: signed_volume(scene, centre) }
+        Self { points, low, high, radius }
     }
 
     pub fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
@@ -54,10 +67,20 @@ impl Bounds {
         self.radius
     }
 
-    /// Walls that face inwards enclose a negative volume; an object's faces a positive one.
-    pub fn is_room(&self) -> bool {
+    /// Whether one stands inside: walls face inwards, an object's faces outwards. Either almost every way from the centre
+    /// ends at the front of a face (cups and bowls are open wider than that), or the faces enclose a negative volume.
+    pub fn room(&self, scene: &Scene) -> Room {
         let size = self.size();
-        self.volume < -0.2 * (size.x * size.y * size.z) && size.min_element() > 0.05 * size.max_element()
+        let centre = self.centre();
+        if size.min_element() <= 0.05 * size.max_element() {
+            Room::None
+        } else if fronts_around(scene, centre) >= ROOM_FRONTS {
+            Room::Closed
+        } else if signed_volume(scene, centre) < -0.2 * (size.x * size.y * size.z) {
+            Room::Open
+        } else {
+            Room::None
+        }
     }
 
     /// Objects stand on something; landscapes are ground, and pictures hang.
@@ -110,23 +133,45 @@ fn triangles(scene: &Scene) -> impl Iterator<Item = [DVec3; 3]> + '_ {
         .take(EXACT_MAX)
 }
 
+/// In how many of `WAYS` directions, evenly spread (a Fibonacci lattice), the first triangle shows its front to `origin`.
+fn fronts_around(scene: &Scene, origin: DVec3) -> usize {
+    let ways: [DVec3; WAYS] = std::array::from_fn(|i| {
+        let y = 1.0 - (2 * i + 1) as f64 / WAYS as f64;
+        let turn = i as f64 * 2.399_963_229_728_653; // the golden angle
+        let r = libm::sqrt(1.0 - y * y);
+        DVec3::new(r * libm::cos(turn), y, r * libm::sin(turn))
+    });
+    let mut nearest = [(f64::INFINITY, false); WAYS];
+    for triangle in triangles(scene) {
+        for (way, nearest) in ways.iter().zip(&mut nearest) {
+            if let Some(found) = intersect(triangle, origin, *way)
+                && found.0 < nearest.0
+            {
+                *nearest = found;
+            }
+        }
+    }
+    nearest.iter().filter(|(_, front)| *front).count()
+}
+
 fn signed_volume(scene: &Scene, centre: DVec3) -> f64 {
     triangles(scene).map(|[a, b, c]| (a - centre).dot((b - centre).cross(c - centre)) / 6.0).sum()
 }
 
 /// Distance from `origin` along `way` (unit) to the first triangle. None: nothing is there.
-/// Möller and Trumbore 1997, both sides.
 pub(super) fn free_distance(scene: &Scene, origin: DVec3, way: DVec3) -> Option<f64> {
-    let hit = |[a, b, c]: [DVec3; 3]| {
-        let (e1, e2, s) = (b - a, c - a, origin - a);
-        let p = way.cross(e2);
-        let det = e1.dot(p);
-        if det == 0.0 {
-            return None;
-        }
-        let q = s.cross(e1);
-        let (u, v, t) = (s.dot(p) / det, way.dot(q) / det, e2.dot(q) / det);
-        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some(t)
-    };
-    triangles(scene).filter_map(hit).reduce(f64::min)
+    triangles(scene).filter_map(|triangle| intersect(triangle, origin, way)).map(|(t, _)| t).reduce(f64::min)
+}
+
+/// Where the ray meets the triangle, and whether at its front. Möller and Trumbore 1997, both sides.
+fn intersect([a, b, c]: [DVec3; 3], origin: DVec3, way: DVec3) -> Option<(f64, bool)> {
+    let (e1, e2, s) = (b - a, c - a, origin - a);
+    let p = way.cross(e2);
+    let det = e1.dot(p);
+    if det == 0.0 {
+        return None;
+    }
+    let q = s.cross(e1);
+    let (u, v, t) = (s.dot(p) / det, way.dot(q) / det, e2.dot(q) / det);
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some((t, det > 0.0))
 }

@@ -3,6 +3,7 @@
 mod bounds;
 pub mod gltf;
 pub mod image;
+mod merl;
 mod meter;
 pub mod obj;
 pub mod ply;

@@ -4,7 +4,7 @@
 //! light that does not, and a light sky; a room is seen from inside. Everything is derived from the model's own bounds, so
 //! its size and place do not matter.
 
-use super::bounds::{Bounds, free_distance};
+use super::bounds::{Bounds, Room, free_distance};
 use crate::scene::{
     Attenuation, Background, Camera, Film, Filter, Geometry, Integrator, IntensityUnit, Light, LightKind, Material,
     MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, ToneMap, Transform, shape,
@@ -75,9 +75,10 @@ pub fn lacks_camera(scene: &Scene) -> bool {
 pub fn stage(scene: &mut Scene) {
     let bounds = Bounds::of(scene);
     let (no_camera, no_lights) = (lacks_camera(scene), scene.lights.is_empty());
-    let room = bounds.is_room();
+    let kind = bounds.room(scene);
+    let room = kind != Room::None;
     if no_camera {
-        scene.camera = if room { room_camera(scene, &bounds) } else { object_camera(&scene.film, &bounds) };
+        scene.camera = if room { room_camera(scene, &bounds, kind) } else { object_camera(&scene.film, &bounds) };
     }
     if no_lights {
         match room {
@@ -140,17 +141,21 @@ fn camera(eye: DVec3, target: DVec3, fov_y: f32) -> Camera {
     Camera { eye: eye.as_vec3(), target: target.as_vec3(), up: Vec3::Y, projection: Projection::Perspective { fov_y } }
 }
 
-/// From where the view across the room's middle is longest, or, if a side is open, through it from outside.
-fn room_camera(scene: &Scene, bounds: &Bounds) -> Camera {
+/// From where the view across the room's middle is longest, or, if a side is missing, through it from outside.
+fn room_camera(scene: &Scene, bounds: &Bounds, kind: Room) -> Camera {
     let centre = bounds.centre();
     // Front first: it wins where distances are equal.
     let ways = [DVec3::Z, DVec3::X, DVec3::NEG_Z, DVec3::NEG_X];
     let free = ways.map(|way| free_distance(scene, centre, way));
-    if let Some(open) = free.iter().position(Option::is_none) {
+    if let Some(open) = free.iter().position(Option::is_none)
+        && kind == Room::Open
+    {
         let distance = fit(&scene.film, bounds, ways[open]);
         return camera(centre + ways[open] * distance, centre, FOV_Y);
     }
-    let lengths = free.map(|d| d.unwrap_or(0.0));
+    // A window ends the room where its walls do.
+    let walls = ways.map(|way| 0.5 * bounds.size().dot(way.abs()));
+    let lengths: [f64; 4] = std::array::from_fn(|i| free[i].unwrap_or(walls[i]).min(walls[i]));
     let best = (0..4).fold(0, |best, i| if lengths[i] > lengths[best] { i } else { best });
     let eye = centre + ways[best] * (0.9 * lengths[best]).max(bounds.radius() * 1e-3);
     camera(eye, centre, FOV_Y_ROOM)
