@@ -14,6 +14,7 @@ use gonio::scene::*;
 use gonio::shading::footprint::{Footprint, UvGradients, cone_footprint, mapped_normal, raised_normal};
 use gonio::shading::parameter::apply_parameter;
 use gonio::shading::pattern::{checker, fractal_noise, gradient_noise, square_mean, zone_plate};
+use gonio::shading::sampling::SampleKey;
 use gonio::shading::texture::{Detail, filter_texture, texture_detail};
 use gonio::trace::surface::{Surface, surface_at};
 use gonio::trace::tangent::{gradients_at, sphere_tangents};
@@ -56,8 +57,39 @@ fn seen(data: &SceneData, ray: &Ray) -> (Record, Surface, Surface) {
     assert_ne!(hit.instance, INVALID, "missed");
     let before = surface_at(&view, ray, &hit);
     let mut surface = before;
-    let material = material_at(&view, ray.direction, &hit, &mut surface);
+    let material = material_at(&view, ray.direction, &hit, key(0), &mut surface);
     (material, surface, before)
+}
+
+fn key(sample_index: u32) -> SampleKey {
+    SampleKey { seed: 3, pixel: 7, sample_index, path_id: 0, sampling: 2, strata: 1 }
+}
+
+#[test]
+fn a_texture_on_the_weight_of_a_blend_chooses_its_materials() {
+    let mut scene = scene_of(vec![square(|c| c)]);
+    let halves = TextureData::Float(Arc::new(vec![[0.0; 4], [0.5; 4]]));
+    scene.textures = vec![Texture { bilinear: false, ..Texture::new("halves", 2, 1, halves) }];
+    let blend = Model::Blend { weight: 1.0, a: MaterialId(1), b: MaterialId(2) };
+    let textures =
+        vec![TextureBinding { parameter: Parameter::Weight, texture: TextureId(0), channel: Channel::R, scale: 1.0 }];
+    let leaf = |x: f32| Material { color: Rgb::splat(x), ..Material::grey("leaf") };
+    scene.materials = vec![Material { model: blend, textures, ..Material::grey("blend") }, leaf(0.25), leaf(0.75)];
+    let data = bake(&scene).expect("bakes");
+    let view = data.view();
+    // On the left always the first; on the right each as often.
+    for (x, share) in [(-0.5, 0.0), (0.5, 0.5)] {
+        let ray = ray(Vec3::new(x, 0.1, 3.0), Vec3::NEG_Z);
+        let hit = trace_closest(&view, &ray);
+        let seconds = (0..4000).filter(|&index| {
+            let mut surface = surface_at(&view, &ray, &hit);
+            let material = material_at(&view, ray.direction, &hit, key(index), &mut surface);
+            assert_eq!(data.materials[surface.material as usize].color, material.color);
+            material.color.x == 0.75
+        });
+        let found = seconds.count() as f32 / 4000.0;
+        assert!((found - share).abs() < 0.04, "{found} of {share}");
+    }
 }
 
 /// All ways to stand, some of them mirrored.

@@ -8,13 +8,14 @@ mod common;
 use chi_square::{Random, direction, integrate_hemisphere, test_sampler};
 use glam::Vec3;
 use gonio::bake::{SceneData, bake};
-use gonio::layout::{Hit, MODEL_BLEND, Ray};
+use gonio::layout::MODEL_BLEND;
 use gonio::scene::load::load;
 use gonio::scene::*;
 use gonio::shading::material::{eval_material, pdf_material, sample_material};
 use gonio::shading::sampling::SampleKey;
-use gonio::trace::surface::{Surface, surface_at};
-use gonio::transport::leaf::leaf_material;
+use gonio::trace::surface::surface_at;
+use gonio::trace::traverse::trace_closest;
+use gonio::transport::textured::material_at;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 use std::fs;
 use std::path::Path;
@@ -141,20 +142,21 @@ fn paths_meet_the_materials_of_a_blend_by_their_shares() {
     let materials = vec![colored(0.1), colored(0.2), colored(0.3), blend(0.6, 1, 2), blend(0.75, 0, 3)];
     let data = baked(materials, Vec::new()).expect("baked");
     assert_eq!(data.materials[4].model, MODEL_BLEND);
+    let view = data.view();
+    let ray = common::ray(Vec3::new(0.1, 0.2, 5.0), Vec3::NEG_Z);
+    let hit = trace_closest(&view, &ray);
+    let met = |material: u32, key: SampleKey| {
+        let mut surface = surface_at(&view, &ray, &hit);
+        surface.material = material;
+        material_at(&view, ray.direction, &hit, key, &mut surface).color.x
+    };
     let mut counts = [0u32; 3];
     let samples = 40_000;
-    let ray = Ray { origin: Vec3::new(0.0, 0.0, 5.0), direction: Vec3::NEG_Z, ..Ray::default() };
-    let hit = Hit { t: 4.0, ..Hit::default() };
-    let here = surface_at(&data.view(), &ray, &hit);
-    let color_of = |material: u32, key: SampleKey| {
-        let mut surface = Surface { material, ..here };
-        leaf_material(&data.view(), ray.direction, &hit, key, &mut surface).color.x
-    };
     for sample_index in 0..samples {
         let key = SampleKey { seed: 3, pixel: 7, sample_index, path_id: 0, sampling: 2, strata: 1 };
-        let color = color_of(4, key);
+        let color = met(4, key);
         counts[[0.1, 0.2, 0.3].iter().position(|c| *c == color).expect("a leaf")] += 1;
-        assert_eq!(color_of(2, key), 0.3);
+        assert_eq!(met(2, key), 0.3);
     }
     for (count, share) in counts.into_iter().zip([0.25, 0.75 * 0.4, 0.75 * 0.6]) {
         // Four standard deviations of a share near a half: .01.

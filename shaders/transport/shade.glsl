@@ -10,7 +10,6 @@
 #include "trace/surface.glsl"
 #include "transport/faceted.glsl"
 #include "transport/generate.glsl"
-#include "transport/leaf.glsl"
 #include "transport/local.glsl"
 #include "transport/path.glsl"
 #include "transport/textured.glsl"
@@ -45,7 +44,7 @@ void shade(PathState incoming, Hit hit) {
     }
     Surface surface = surface_at(path.ray, hit);
     uint named = surface.material;
-    Material material = leaf_material(path.ray.direction, hit, key, surface);
+    Material material = material_at(path.ray.direction, hit, key, surface);
     if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
@@ -60,8 +59,7 @@ void shade(PathState incoming, Hit hit) {
         ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
         Material material_there = material;
         if (faceted(flags)) {
-            point.surface.material = surface.material;
-            material_there = material_at(-point.wo, point.hit, point.surface);
+            material_there = material_at(-point.wo, point.hit, key, point.surface);
         }
         shade_local(path, key, point, material_there);
     }

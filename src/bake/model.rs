@@ -20,8 +20,8 @@ const BLEND_DEPTH: usize = 8;
 /// `traced`: for path tracing, which wants reciprocal models.
 pub fn bake_material(
     material: &scene::Material,
-    traced: bool,
     measured: &[Table],
+    traced: bool,
     tables: &mut Vec<f32>,
 ) -> Result<Material, BakeError> {
     let mut baked = Material {
@@ -42,7 +42,7 @@ pub fn bake_material(
     if !material.emission_two_sided {
         baked.flags |= MATERIAL_EMIT_ONE_SIDED;
     }
-    bake_model(material, traced, measured, &mut baked, tables)?;
+    bake_model(material, measured, traced, &mut baked, tables)?;
     match material.transparency {
         None if matches!(material.model, Model::Null) => baked.k_t = 1.0,
         // What does not cover lets everything through (`path` draws it at random, the others as a branch).
@@ -59,8 +59,8 @@ pub fn bake_material(
 
 fn bake_model(
     material: &scene::Material,
-    traced: bool,
     measured: &[Table],
+    traced: bool,
     baked: &mut Material,
     tables: &mut Vec<f32>,
 ) -> Result<(), BakeError> {

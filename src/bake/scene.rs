@@ -71,7 +71,7 @@ fn traced(scene: &Scene) -> bool {
 /// Bakes all materials, and one more where an object or face names none. Returns the id of that one.
 fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, BakeError> {
     for material in &scene.materials {
-        let mut baked = bake_material(material, traced(scene), &scene.tables, &mut data.tables)?;
+        let mut baked = bake_material(material, &scene.tables, traced(scene), &mut data.tables)?;
         bind_textures(material, &mut baked, data)?;
         data.materials.push(baked);
     }
@@ -81,7 +81,7 @@ fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, Bak
     };
     let default = MaterialId(scene.materials.len() as u32);
     if scene.objects.iter().any(nameless) {
-        data.materials.push(bake_material(&Material::grey("default"), traced(scene), &[], &mut data.tables)?);
+        data.materials.push(bake_material(&Material::grey("default"), &[], traced(scene), &mut data.tables)?);
     }
     bake_blends(&scene.materials, &mut data.materials)?;
     check_count("table entries", data.tables.len())?;

@@ -10,7 +10,6 @@ pub mod emitter;
 pub mod faceted;
 pub mod film;
 pub mod generate;
-pub mod leaf;
 pub mod local;
 pub mod path;
 pub mod shade;

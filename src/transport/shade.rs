@@ -2,7 +2,6 @@
 
 use super::faceted::{faceted, shading_point, shading_points};
 use super::generate::sample_key;
-use super::leaf::leaf_material;
 use super::local::{shade_local, shade_through};
 use super::path::{shade_escape, shade_path};
 use super::textured::material_at;
@@ -52,7 +51,7 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     }
     let mut surface = surface_at(scene, &path.ray, hit);
     let named = surface.material;
-    let material = leaf_material(scene, path.ray.direction, hit, key, &mut surface);
+    let material = material_at(scene, path.ray.direction, hit, key, &mut surface);
     if scene.header.aovs != 0 && path.path_id == 0 {
         let albedo = albedo_material(&material);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
@@ -68,8 +67,7 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
         let mut point = shading_point(scene, &path.ray, hit, &surface, flags, index);
         let mut material_there = material;
         if faceted(flags) {
-            point.surface.material = surface.material;
-            material_there = material_at(scene, -point.wo, &point.hit, &mut point.surface);
+            material_there = material_at(scene, -point.wo, &point.hit, key, &mut point.surface);
         }
         shade_local(scene, &path, key, &point, &material_there, queues);
     }

@@ -171,7 +171,7 @@ fn read_rough_model(
         "null" => Model::Null,
         // The names are looked up once all are known.
         "blend" => {
-            let weight = table.float("weight")?.unwrap_or(0.5);
+            let weight = table.float("weight")?.unwrap_or(if table.has("weight_texture") { 1.0 } else { 0.5 });
             Model::Blend { weight, a: MaterialId(0), b: MaterialId(0) }
         }
         _ => Model::Lambert,
@@ -207,7 +207,7 @@ fn read_principled(table: &Reader) -> Result<Principled> {
     Ok(Principled {
         roughness: or("roughness", 0.5)?,
         anisotropic: or("anisotropic", 0.0)?,
-        metallic: or("metallic", 0.0)?,
+        metallic: or("metallic", if table.has("metallic_texture") { 1.0 } else { 0.0 })?,
         spec_trans: or("spec_trans", 0.0)?,
         eta: read_eta(table)?,
         spec_tint: or("spec_tint", 0.0)?,
