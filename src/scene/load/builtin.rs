@@ -12,7 +12,8 @@ use std::path::Path;
 /// Triangles of `terrain`, `hairball` and `teapots` that do not say.
 pub const DEFAULT_TRIANGLES: u64 = 200_000;
 pub const DEFAULT_LEVEL: u64 = 4;
-/// Cells along each side of a teapot's patches, and the triangles they make: 2 * 32 * 8^2 less 8 for each of eight patches that end in a pole.
+/// Cells along each side of a teapot's patches, and the triangles they make: 2 * 32 * 8^2, less 8 for each of the eight
+/// patches that end in a pole.
 pub const TEAPOT_STEPS: u32 = 8;
 pub const TEAPOT_TRIANGLES: u64 = 4032;
 
@@ -93,13 +94,13 @@ fn build(path: &Path, kind: Builtin, size: u64) -> Scene {
     scene
 }
 
-/// Haines's colours and lights, twice as far away as his sphere is small.
+/// Haines's lights, twice as far away as his sphere is small.
 fn sphereflake(scene: &mut Scene, level: u32) {
     look(scene, [3.6, 2.9, 2.2], [0.0, 0.15, 0.0], 45.0);
     let gold = Material {
         model: Model::BlinnPhong { exponent: 60.0 },
-        color: Rgb::new(1.0, 0.75, 0.33),
-        specular_color: Rgb::new(1.0, 0.9, 0.7),
+        color: Rgb::new(0.9, 0.5, 0.12),
+        specular_color: Rgb::new(1.0, 0.76, 0.4),
         k_d: 0.5,
         k_s: 0.3,
         k_r: 0.4,
@@ -143,7 +144,7 @@ fn hairball(scene: &mut Scene, triangles: u64) {
 fn teapots(scene: &mut Scene, triangles: u64) {
     let count = teapot_count(triangles);
     let size = shape::field_size(count) as f32;
-    look(scene, [0.2 * size, 0.25 * size + 3.0, 0.62 * size + 5.0], [0.0, 0.0, 0.1 * size], 38.0);
+    look(scene, [0.2 * size, 0.25 * size + 3.0, 0.68 * size + 5.0], [0.0, 0.0, 0.1 * size], 38.0);
     let mesh = add_mesh(scene, shape::teapot(TEAPOT_STEPS));
     let glossy = |name: &str, color: [f32; 3], k_r: f32| Material {
         model: Model::BlinnPhong { exponent: 120.0 },
