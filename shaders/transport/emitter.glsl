@@ -27,9 +27,10 @@ uint choose_emitter(vec2 u) {
 // Radiance of the point of a textured emitter that `lit` was drawn to from `position` with `u`.
 Spectrum textured_radiance(Emitter emitter, vec3 position, vec2 u, LightSample lit) {
     vec2 b = square_to_uniform_triangle(u);
-    Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0u, 0u);
+    Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0.0, 0.0);
     Hit hit = Hit(lit.distance, b.x, b.y, emitter.instance, emitter.primitive, 0u, 0u, 0u);
-    return spectrum_from_rgb(emission_material(material_at(surface_at(ray, hit))));
+    Surface surface = surface_at(ray, hit);
+    return spectrum_from_rgb(emission_material(material_at(lit.wi, hit, surface)));
 }
 
 // Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1.

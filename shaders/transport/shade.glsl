@@ -40,7 +40,7 @@ void shade(PathState incoming, Hit hit) {
         return;
     }
     Surface surface = surface_at(path.ray, hit);
-    Material material = material_at(surface);
+    Material material = material_at(path.ray.direction, hit, surface);
     if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);

@@ -8,7 +8,7 @@ use super::{BakeError, SceneData};
 use crate::layout::{
     EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_ONE_SIDED, EMITTER_SPHERE, EMITTER_TEXTURED, EMITTER_TRIANGLE, Emitter,
     INVALID, Instance, KIND_SPHERE, LIGHT_DIRECTIONAL, LIGHT_SPOT, Light, MATERIAL_EMIT_ONE_SIDED, MODEL_EMISSIVE,
-    Material,
+    Material, PARAMETER_COLOR, PARAMETER_EMISSION,
 };
 use crate::scene::{Background, Scene};
 use glam::{DMat3, DVec3, Vec3, Vec4};
@@ -137,7 +137,12 @@ fn collect_instance(
         let sided = if (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0 { EMITTER_ONE_SIDED } else { 0 };
         sided | if textured { EMITTER_TEXTURED } else { 0 }
     };
-    let textured = |material: &Material| material.model == MODEL_EMISSIVE && material.color_texture != INVALID;
+    let textured = |material: &Material| {
+        let first = material.first_texture as usize;
+        let records = &data.textures[first..first + material.texture_count as usize];
+        let shown = material.model == MODEL_EMISSIVE;
+        records.iter().any(|t| t.parameter == PARAMETER_EMISSION || (shown && t.parameter == PARAMETER_COLOR))
+    };
     let mut power = 0.0;
     let sides = |material: &Material| if (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0 { 1.0 } else { 2.0 };
     if instance.kind == KIND_SPHERE {

@@ -13,9 +13,11 @@ pub mod filter;
 mod geometry;
 mod instance;
 mod light;
+mod mip;
 mod model;
 mod scene;
 pub mod srgb;
+mod texture;
 
 pub use data::{HeapPiece, SceneData};
 pub use scene::bake;
@@ -34,6 +36,9 @@ pub enum BakeError {
     /// Cook-Torrance has one or two lobes.
     #[error("material \"{name}\" has {count} lobes; one or two are possible")]
     Lobes { name: String, count: usize },
+    /// The loop over a material's textures has a bound.
+    #[error("material \"{name}\" has {count} textures; 16 are possible")]
+    Textures { name: String, count: usize },
     /// A model whose shading has not landed yet.
     #[error("material \"{name}\": its model cannot be drawn yet")]
     Unfinished { name: String },

@@ -4,7 +4,7 @@ use super::BakeError;
 use super::albedo::{conductor_table, constant_table, diffuse_reflectance, kelemen_table, plastic_table};
 use crate::layout::*;
 use crate::scene::{
-    self, Distribution, Fresnel, Lobe, Masking, Model, Parameter, Transparency, WardNormalisation,
+    self, Distribution, Fresnel, Lobe, Masking, Model, Transparency, WardNormalisation,
 };
 use glam::Vec3;
 
@@ -29,7 +29,6 @@ pub fn bake_material(
         k_s: material.k_s,
         k_r: material.k_r,
         eta: Vec3::ONE,
-        color_texture: material.texture(Parameter::Color).map_or(INVALID, |id| id.0),
         emission: material.emission,
         table: INVALID,
         ..Material::default()

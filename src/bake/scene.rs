@@ -5,9 +5,10 @@ use super::emitter::{bake_emitters, bake_surroundings};
 use super::filter::filter_table;
 use super::geometry::{BakedMesh, bake_mesh};
 use super::instance::{place, top_margin};
-use super::light::{bake_light, bake_texture, unit};
+use super::light::{bake_light, unit};
 use super::model::{bake_blends, bake_material, casts_shadow};
 use super::srgb::srgb_table;
+use super::texture::{bake_textures, bind_textures};
 use super::{BakeError, SceneData};
 use crate::layout::{
     Camera, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH,
@@ -25,12 +26,10 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     let mut data = SceneData::default();
     data.header = header(scene)?;
     bake_tables(&scene.film.filter, &mut data);
+    bake_textures(&scene.textures, &mut data);
+    check_count("words of texels", data.texels.len())?;
     let default_material = bake_materials(scene, &mut data)?;
     data.lights = scene.lights.iter().map(bake_light).collect();
-    for texture in &scene.textures {
-        data.textures.push(bake_texture(texture, &mut data.texels));
-    }
-    check_count("words of texels", data.texels.len())?;
     let meshes = bake_meshes(scene, default_material);
     let mut parts = place_objects(scene, &meshes, default_material, &mut data)?;
     parts.meshes = meshes;
@@ -56,7 +55,9 @@ fn traced(scene: &Scene) -> bool {
 /// Bakes all materials, and one more where an object or face names none. Returns the id of that one.
 fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, BakeError> {
     for material in &scene.materials {
-        data.materials.push(bake_material(material, traced(scene), &mut data.tables)?);
+        let mut baked = bake_material(material, traced(scene), &mut data.tables)?;
+        bind_textures(material, &mut baked, data)?;
+        data.materials.push(baked);
     }
     let nameless = |object: &Object| match object.geometry {
         Geometry::Sphere => object.material.is_none(),
@@ -310,6 +311,7 @@ fn camera(camera: &scene::Camera, film: &Film) -> Result<Camera, BakeError> {
         up: (up * half_height).as_vec3(),
         scale_y: (2.0 / f64::from(film.height)) as f32,
         forward: unit(forward),
+        pixel_size: (2.0 * half_height / f64::from(film.height)) as f32,
         ..Camera::default()
     })
 }

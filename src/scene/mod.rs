@@ -24,7 +24,7 @@ pub use material::{
 pub use mesh::Mesh;
 pub use settings::{Background, Environment, Film, Filter, Integrator, RenderSettings, Sampler, ToneMap};
 pub use table::Table;
-pub use texture::{Texture, TextureData, Wrap};
+pub use texture::{Pattern, PatternKind, Texture, TextureData, Wrap};
 pub use transform::Transform;
 
 use glam::Vec3;

@@ -42,7 +42,8 @@ fn textured_radiance(scene: &SceneView, emitter: &Emitter, position: Vec3, u: Ve
         primitive: emitter.primitive,
         ..Hit::default()
     };
-    spectrum_from_rgb(emission_material(&material_at(scene, &surface_at(scene, &ray, &hit))))
+    let mut surface = surface_at(scene, &ray, &hit);
+    spectrum_from_rgb(emission_material(&material_at(scene, lit.wi, &hit, &mut surface)))
 }
 
 /// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1.

@@ -46,8 +46,8 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     if spectrum_max(path.throughput) < THROUGHPUT_MIN {
         return;
     }
-    let surface = surface_at(scene, &path.ray, hit);
-    let material = material_at(scene, &surface);
+    let mut surface = surface_at(scene, &path.ray, hit);
+    let material = material_at(scene, path.ray.direction, hit, &mut surface);
     if scene.header.aovs != 0 && path.path_id == 0 {
         let albedo = albedo_material(&material);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);

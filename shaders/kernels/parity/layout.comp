@@ -161,15 +161,37 @@ void store_constants() {
     constants[84] = ALBEDO_HEADER;
     constants[85] = ALBEDO_KNOTS;
     constants[86] = MAX_LEAVES;
-    constants[87] = INTEGRATOR_PATH;
-    constants[88] = EMITTER_TRIANGLE;
-    constants[89] = EMITTER_SPHERE;
-    constants[90] = EMITTER_LIGHT;
-    constants[91] = EMITTER_ENVIRONMENT;
-    constants[92] = EMITTER_ONE_SIDED;
-    constants[93] = EMITTER_TEXTURED;
-    constants[94] = EMITTER_WORDS;
-    constants[95] = ENVIRONMENT_MAP_WORDS;
+    constants[87] = PATTERN_CHECKER;
+    constants[88] = PATTERN_NOISE;
+    constants[89] = PATTERN_GRADIENT;
+    constants[90] = PATTERN_ZONE_PLATE;
+    constants[91] = PARAMETER_COLOR;
+    constants[92] = PARAMETER_SPECULAR_COLOR;
+    constants[93] = PARAMETER_EMISSION;
+    constants[94] = PARAMETER_ROUGHNESS;
+    constants[95] = PARAMETER_ROUGHNESS_U;
+    constants[96] = PARAMETER_ROUGHNESS_V;
+    constants[97] = PARAMETER_METALLIC;
+    constants[98] = PARAMETER_OPACITY;
+    constants[99] = PARAMETER_MASK;
+    constants[100] = PARAMETER_WEIGHT;
+    constants[101] = PARAMETER_NORMAL;
+    constants[102] = PARAMETER_BUMP;
+    constants[103] = CHANNEL_R;
+    constants[104] = CHANNEL_G;
+    constants[105] = CHANNEL_B;
+    constants[106] = CHANNEL_A;
+    constants[107] = CHANNEL_RGB;
+    constants[108] = TEXTURES_MOST;
+    constants[109] = INTEGRATOR_PATH;
+    constants[110] = EMITTER_TRIANGLE;
+    constants[111] = EMITTER_SPHERE;
+    constants[112] = EMITTER_LIGHT;
+    constants[113] = EMITTER_ENVIRONMENT;
+    constants[114] = EMITTER_ONE_SIDED;
+    constants[115] = EMITTER_TEXTURED;
+    constants[116] = EMITTER_WORDS;
+    constants[117] = ENVIRONMENT_MAP_WORDS;
 }
 
 void main() {

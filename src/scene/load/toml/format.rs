@@ -170,6 +170,10 @@ const PHONGS: &[&str] = &["phong", "blinn-phong"];
 const LOCAL: &[&str] = &["lambert", "phong", "blinn-phong", "cook-torrance"];
 const SPECULAR: &[&str] = &["phong", "blinn-phong", "cook-torrance"];
 
+/// Models with a roughness.
+const ROUGH: &[&str] = &["cook-torrance"];
+const TEXTURED: &str = "a file name or a table";
+
 pub static MATERIAL: Section = Section {
     name: "[[material]]",
     noun: "[[material]]",
@@ -177,7 +181,17 @@ pub static MATERIAL: Section = Section {
         key("name", Kind::Text, "required", "What objects call it; unique"),
         key("model", Kind::Choice(&["lambert", "phong", "blinn-phong", "cook-torrance", "mirror", "dielectric", "emissive"]), "`\"lambert\"`", "The illumination model"),
         key("color", Kind::Color(Range::NOT_NEGATIVE), "0.7; mirror 0.9 or the metal's; cook-torrance metals the metal's; emissive 1", "O_d, the diffuse colour, up to 1; of a mirror its reflectance, up to 1; of `emissive` its radiance").only(&["lambert", "phong", "blinn-phong", "cook-torrance", "mirror", "emissive"]),
-        key("texture", Kind::Special("a file name or a table"), "none", "Image that multiplies `color`; the table's keys are below. With a texture, `color` is 1 unless given").only(&["lambert", "phong", "blinn-phong", "cook-torrance", "mirror", "emissive"]),
+        key("texture", Kind::Special(TEXTURED), "none", "Multiplies `color`, which is 1 unless given; the table's keys are below, as for all that follow").only(&["lambert", "phong", "blinn-phong", "cook-torrance", "mirror", "emissive"]),
+        key("specular_texture", Kind::Special(TEXTURED), "none", "Multiplies `specular_color`").only(&["lambert", "phong", "blinn-phong", "cook-torrance", "dielectric"]),
+        key("emission_texture", Kind::Special(TEXTURED), "none", "Multiplies `emission`, which is 1 unless given").only(LOCAL),
+        key("roughness_texture", Kind::Special(TEXTURED), "none", "Multiplies the roughness, in both directions and of all lobes").only(ROUGH),
+        key("roughness_u_texture", Kind::Special(TEXTURED), "none", "Multiplies the roughness along u alone").only(ROUGH),
+        key("roughness_v_texture", Kind::Special(TEXTURED), "none", "Multiplies the roughness along v alone").only(ROUGH),
+        key("metallic_texture", Kind::Special(TEXTURED), "none", "Multiplies how much of the surface is metal"),
+        key("weight_texture", Kind::Special(TEXTURED), "none", "Multiplies the weight of a mixture"),
+        key("opacity_texture", Kind::Special(TEXTURED), "none", "Multiplies how much of what lies behind the surface covers: black is a hole. Shadows are those of the whole surface").only(LOCAL),
+        key("normal_map", Kind::Special(TEXTURED), "none", "Turns the normal: red towards growing u, green towards growing v (up the image, as OpenGL and glTF have it), (0.5, 0.5, 1) leaves it"),
+        key("bump_map", Kind::Special(TEXTURED), "none", "Heights by which the normal is turned as if the surface were raised"),
         key("k_a", Kind::Number(Range::NOT_NEGATIVE), "1", "Weight of the ambient term").only(LOCAL),
         key("k_d", Kind::Number(Range::NOT_NEGATIVE), "lambert 1, phong and blinn-phong 0.7, cook-torrance 1 - k_s", "Weight of the diffuse term").only(LOCAL),
         key("k_s", Kind::Number(Range::NOT_NEGATIVE), "phong and blinn-phong 0.3, cook-torrance metals 1, else 0.5", "Weight of the specular term; cook-torrance: k_d + k_s = 1").only(SPECULAR),
@@ -203,22 +217,22 @@ pub static TEXTURE: Section = Section {
     name: "texture = { … }",
     noun: "a texture",
     keys: &[
-        key("file", Kind::Text, "required", "PNG, JPEG, WebP or Radiance HDR, relative to the scene file"),
-        key(
-            "wrap",
-            Kind::Special("\"repeat\", \"clamp\", \"mirror\" or two of them [u, v]"),
-            "`\"repeat\"`",
-            "What lies beyond the image's edge",
-        ),
+        key("file", Kind::Text, "required without `pattern`", "PNG, JPEG, WebP, OpenEXR or Radiance HDR, relative to the scene file"),
+        key("pattern", Kind::Choice(&["checker", "noise", "gradient", "zone-plate"]), "none", "Computed instead of a file, between `colors`: 2 x 2 fields a unit; gradient noise (Perlin 2002) of one feature a unit; a ramp along u, there and back; rings around uv = 0 whose frequency is the distance"),
+        key("colors", Kind::Special("two colours >= 0"), "[0, 1]", "Of a pattern; the first is at the lower left of a checker, at u = 0 of a gradient"),
+        key("octaves", Kind::Integer { min: 1, max: 16 }, "6", "Of noise: each twice as fine as the last"),
+        key("gain", Kind::Number(Range::UNIT), "0.5", "Of noise: strength of an octave over that of the last"),
+        key("seed", Kind::Integer { min: 0, max: u32::MAX as i64 }, "0", "Of noise: another seed, another pattern"),
+        key("wrap", Kind::Special("\"repeat\", \"clamp\", \"mirror\" or two of them [u, v]"), "`\"repeat\"`", "What lies beyond the image's edge"),
         key("filter", Kind::Choice(&["bilinear", "nearest"]), "`\"bilinear\"`", "Between texels"),
-        key(
-            "scale",
-            Kind::Special("a number or two numbers [u, v]"),
-            "1",
-            "uv' = uv * scale + offset; 4 repeats the image four times",
-        ),
-        key("offset", Kind::Special("a number or two numbers [u, v]"), "0", "See `scale`"),
-        key("colorspace", Kind::Choice(&["srgb", "linear"]), "`\"srgb\"`", "Encoding of 8-bit images"),
+        key("mipmap", Kind::Boolean, "false", "Read the mean over what a pixel covers (ray cones; trilinear, up to 8 probes along its longer side): less noise from far away. Without it many samples come to the same, and nothing is ever blurred"),
+        key("scale", Kind::Special("a number or two numbers [u, v]"), "1", "Applied first: 4 repeats the image four times"),
+        key("rotate", Kind::Number(Range::new(-3600.0, 3600.0)), "0", "Applied second: turns the image counter-clockwise, degrees"),
+        key("offset", Kind::Special("a number or two numbers [u, v]"), "0", "Applied last, added to the coordinates"),
+        key("colorspace", Kind::Choice(&["srgb", "linear"]), "colours `\"srgb\"`, all else `\"linear\"`", "Encoding of 8-bit images"),
+        key("channel", Kind::Choice(&["rgb", "r", "g", "b", "a"]), "colours and normal maps `\"rgb\"`, all else `\"r\"`", "What of the image counts; one channel makes a colour grey"),
+        key("strength", Kind::Number(Range::new(0.0, 100.0)), "1", "Of a normal map: factor on its leaning"),
+        key("height", Kind::Number(Range::ANY), "1", "Of a bump map: height of white, scene units"),
     ],
 };
 

@@ -7,7 +7,7 @@ use super::metal::{METALS, normal_reflectance};
 use super::names::Names;
 use super::reader::{Reader, Result, in_range};
 use super::texture::Textures;
-use crate::scene::{Fresnel, Lobe, Masking, Material, Model, Rgb, TextureBinding, Transparency};
+use crate::scene::{Fresnel, Lobe, Masking, Material, Model, Parameter, Rgb, Transparency};
 
 /// All materials of the document, and their names.
 pub fn read_materials(
@@ -50,18 +50,19 @@ fn read_material(
     let model_name = table.choice("model", MODELS)?.unwrap_or("lambert");
     table.warn_unused("model", model_name, warnings);
     let model = read_model(table, model_name)?;
-    let texture = textures.read(table)?;
+    let textures = textures.read(table)?;
+    let varies = |parameter| textures.iter().any(|binding| binding.parameter == parameter);
     let (k_d, k_s) = read_weights(table, &model)?;
     Ok(Material {
-        color: read_color(table, &model, texture.is_some())?,
-        textures: texture.map(TextureBinding::color).into_iter().collect(),
+        color: read_color(table, &model, varies(Parameter::Color))?,
         specular_color: table.color("specular_color")?.unwrap_or(Rgb::ONE),
         k_a: table.float("k_a")?.unwrap_or(1.0),
         k_d,
         k_s,
         k_r: table.float("k_r")?.unwrap_or(0.0),
         transparency: read_transparency(table)?,
-        emission: table.color("emission")?.unwrap_or(Rgb::ZERO),
+        emission: table.color("emission")?.unwrap_or(if varies(Parameter::Emission) { Rgb::ONE } else { Rgb::ZERO }),
+        textures,
         casts_shadow: table.boolean("casts_shadow")?,
         model,
         ..Material::grey(name)
