@@ -125,7 +125,9 @@ fn run_case(args: &VerifyArgs, folder: &Path, case: &Case) -> anyhow::Result<Row
                 "accepted": test.accepted, "accepted_min": ACCEPTED_MIN, "brightness": test.brightness,
                 "worst_z": test.worst, "worst_at": test.worst_at, "samples": samples, "film_hash": film.hash().to_string(),
             });
-            if !test.passes() && let Some(keep) = &args.keep {
+            if !test.passes()
+                && let Some(keep) = &args.keep
+            {
                 let name = case.scene.file_stem().unwrap_or_default().to_string_lossy();
                 keep_exr(&keep.join(format!("{name}.exr")), &image)?;
                 keep_exr(&keep.join(format!("{name}-reference.exr")), &mean)?;
@@ -152,7 +154,9 @@ fn run_case(args: &VerifyArgs, folder: &Path, case: &Case) -> anyhow::Result<Row
             row.measures = serde_json::json!({
                 "mean_codes": test.mean, "absolute_codes": test.absolute, "film_hash": film.hash().to_string(),
             });
-            if !test.passes() && let Some(keep) = &args.keep {
+            if !test.passes()
+                && let Some(keep) = &args.keep
+            {
                 let name = case.scene.file_stem().unwrap_or_default().to_string_lossy();
                 keep_exr(&keep.join(format!("{name}.exr")), &image)?;
                 keep_exr(&keep.join(format!("{name}-reference.exr")), &reference)?;

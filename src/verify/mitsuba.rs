@@ -58,7 +58,8 @@ fn reference_of(scene: &Path) -> Option<Reference> {
     let folder = scene.parent()?;
     let name = scene.file_stem()?.to_str()?;
     if let Some((stem, _)) = name.rsplit_once('_') {
-        let [mean, variance] = ["", "_var"].map(|suffix| folder.join("refs").join(format!("{stem}_ref_rgb{suffix}.exr")));
+        let [mean, variance] =
+            ["", "_var"].map(|suffix| folder.join("refs").join(format!("{stem}_ref_rgb{suffix}.exr")));
         if mean.is_file() && variance.is_file() {
             return Some(Reference::Statistics { mean, variance });
         }

@@ -92,6 +92,9 @@ mod tests {
     #[test]
     fn the_table_counts_its_rows() {
         let text = table(&[row(Outcome::Proved), row(Outcome::Unproved)]);
-        assert_eq!(text, "ok    z-test  a.xml     1.00 s  99.9 %\nFAIL  z-test  a.xml     1.00 s  99.9 %\n1 proved, 1 not, 0 skipped\n");
+        assert_eq!(
+            text,
+            "ok    z-test  a.xml     1.00 s  99.9 %\nFAIL  z-test  a.xml     1.00 s  99.9 %\n1 proved, 1 not, 0 skipped\n"
+        );
     }
 }

@@ -85,7 +85,8 @@ fn steps_of_a_transform_apply_in_the_order_written() {
     let matrix = place("<matrix value=\"0 1 0 5  2 0 0 6  0 0 3 7  0 0 0 1\"/>").transform_point3(p);
     assert!(close(matrix, [7.0, 8.0, 16.0]), "{matrix}");
     // x is to the left of one who looks along +z.
-    let looked = place("<lookat origin=\"1,2,3\" target=\"1,2,9\" up=\"0,1,0\"/>").transform_point3(DVec3::new(1.0, 0.0, 2.0));
+    let looked =
+        place("<lookat origin=\"1,2,3\" target=\"1,2,9\" up=\"0,1,0\"/>").transform_point3(DVec3::new(1.0, 0.0, 2.0));
     assert!(close(looked, [2.0, 2.0, 5.0]), "{looked}");
 }
 
@@ -102,7 +103,8 @@ fn a_sphere_is_moved_by_its_centre_before_its_transform() {
 
 #[test]
 fn named_shapes_face_as_in_mitsuba_and_flip() {
-    for (shape, expected) in [("rectangle", Vec3::Z), ("disk", Vec3::Z), ("cylinder", Vec3::ZERO), ("cube", Vec3::ZERO)] {
+    for (shape, expected) in [("rectangle", Vec3::Z), ("disk", Vec3::Z), ("cylinder", Vec3::ZERO), ("cube", Vec3::ZERO)]
+    {
         for flip in [false, true] {
             let scene = read(&format!(
                 "<sensor type=\"perspective\"/><shape type=\"{shape}\"><boolean name=\"flip_normals\" value=\"{flip}\"/></shape>"
@@ -113,7 +115,8 @@ fn named_shapes_face_as_in_mitsuba_and_flip() {
                 let [a, b, c] = triangle.map(|i| mesh.positions[i as usize]);
                 let (face, shading) = ((b - a).cross(c - a), mesh.normals[triangle[0] as usize]);
                 assert!(face.dot(shading) > 0.0, "{shape} {flip}: {face} {shading}");
-                let outwards = if expected == Vec3::ZERO { a.with_z(if shape == "cube" { a.z } else { 0.0 }) } else { expected };
+                let outwards =
+                    if expected == Vec3::ZERO { a.with_z(if shape == "cube" { a.z } else { 0.0 }) } else { expected };
                 assert!(sign * outwards.dot(shading) > 0.0, "{shape} {flip}: {outwards} {shading}");
             }
         }
@@ -273,7 +276,9 @@ fn adapters_change_what_they_hold() {
     let inner = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"#ffffff\"/></bsdf>";
     let both = material(&format!("<bsdf type=\"twosided\">{inner}</bsdf>"));
     assert_eq!((both.two_sided, both.color), (true, Rgb::ONE));
-    let masked = material(&format!("<bsdf type=\"mask\"><float name=\"opacity\" value=\"0.25\"/><bsdf type=\"twosided\">{inner}</bsdf></bsdf>"));
+    let masked = material(&format!(
+        "<bsdf type=\"mask\"><float name=\"opacity\" value=\"0.25\"/><bsdf type=\"twosided\">{inner}</bsdf></bsdf>"
+    ));
     assert_eq!((masked.opacity, masked.two_sided, masked.model), (0.25, true, Model::Lambert));
     let scene = read(&format!(
         "<sensor type=\"perspective\"/><shape type=\"cube\"><bsdf type=\"twosided\"><bsdf type=\"blendbsdf\">\
@@ -305,14 +310,19 @@ fn emitters_have_mitsubas_defaults() {
     let light = |emitter: &str| read(&format!("{LEAST}{emitter}")).lights.swap_remove(0);
     let point = light("<emitter type=\"point\"><point name=\"position\" value=\"1, 2, 3\"/></emitter>");
     assert_eq!(point.kind, LightKind::Point { position: Vec3::new(1.0, 2.0, 3.0) });
-    assert_eq!((point.intensity, point.unit, point.attenuation), (Rgb::ONE, IntensityUnit::Radiometric, Attenuation::InverseSquare));
+    assert_eq!(
+        (point.intensity, point.unit, point.attenuation),
+        (Rgb::ONE, IntensityUnit::Radiometric, Attenuation::InverseSquare)
+    );
     let spot = light(
         "<emitter type=\"spot\"><transform name=\"to_world\"><lookat origin=\"1,0,0\" target=\"2,0,0\" up=\"0,1,0\"/></transform></emitter>",
     );
     let LightKind::Spot { position, direction, inner, outer, exponent } = spot.kind else { panic!("{spot:?}") };
     assert_eq!((position, direction, exponent), (Vec3::X, Vec3::X, 0.0));
     assert!((outer - 20.0_f32.to_radians()).abs() < 1e-6 && (inner - 15.0_f32.to_radians()).abs() < 1e-6);
-    let sun = light("<emitter type=\"directional\"><vector name=\"direction\" value=\"0, -2, 0\"/><rgb name=\"irradiance\" value=\"5\"/></emitter>");
+    let sun = light(
+        "<emitter type=\"directional\"><vector name=\"direction\" value=\"0, -2, 0\"/><rgb name=\"irradiance\" value=\"5\"/></emitter>",
+    );
     assert_eq!((sun.kind, sun.intensity), (LightKind::Directional { direction: Vec3::NEG_Y }, Rgb::splat(5.0)));
 }
 
@@ -354,11 +364,14 @@ fn a_texture_is_turned_by_to_uv() {
 #[test]
 fn depths_count_surfaces_instead_of_edges() {
     let depth = |text: &str| {
-        let value = if text.is_empty() { String::new() } else { format!("<integer name=\"max_depth\" value=\"{text}\"/>") };
+        let value =
+            if text.is_empty() { String::new() } else { format!("<integer name=\"max_depth\" value=\"{text}\"/>") };
         read(&format!("{LEAST}<integrator type=\"path\">{value}</integrator>")).settings.max_depth
     };
     assert_eq!(["0", "1", "2", "6", "-1", "", "1000"].map(depth), [0, 0, 1, 5, 64, 64, 64]);
-    let wrapped = read(&format!("{LEAST}<integrator type=\"moment\"><integrator type=\"path\"><integer name=\"max_depth\" value=\"3\"/></integrator></integrator>"));
+    let wrapped = read(&format!(
+        "{LEAST}<integrator type=\"moment\"><integrator type=\"path\"><integer name=\"max_depth\" value=\"3\"/></integrator></integrator>"
+    ));
     assert_eq!((wrapped.settings.integrator, wrapped.settings.rr_depth), (Integrator::Path, 5));
     let direct = read(&format!("{LEAST}<integrator type=\"direct\"/>")).settings;
     assert_eq!((direct.integrator, direct.max_depth), (Integrator::Direct, 1));
@@ -371,13 +384,19 @@ fn filters_and_samplers_are_those_of_the_same_name() {
     for (filter, expected) in [
         ("<rfilter type=\"box\"/>", Filter::Box { radius: 0.5 }),
         ("<rfilter type=\"tent\"/>", Filter::Tent { radius: 1.0 }),
-        ("<rfilter type=\"gaussian\"><float name=\"stddev\" value=\"0.25\"/></rfilter>", Filter::Gaussian { radius: 1.0, sigma: 0.25 }),
+        (
+            "<rfilter type=\"gaussian\"><float name=\"stddev\" value=\"0.25\"/></rfilter>",
+            Filter::Gaussian { radius: 1.0, sigma: 0.25 },
+        ),
         ("<rfilter type=\"mitchell\"/>", Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 }),
     ] {
         assert_eq!(scene(&format!("<film type=\"hdrfilm\">{filter}</film>")).film.filter, expected);
     }
-    for (sampler, expected) in [("independent", Sampler::Independent), ("stratified", Sampler::Stratified), ("multijitter", Sampler::Sobol)] {
-        let settings = scene(&format!("<sampler type=\"{sampler}\"><integer name=\"seed\" value=\"7\"/></sampler>")).settings;
+    for (sampler, expected) in
+        [("independent", Sampler::Independent), ("stratified", Sampler::Stratified), ("multijitter", Sampler::Sobol)]
+    {
+        let settings =
+            scene(&format!("<sampler type=\"{sampler}\"><integer name=\"seed\" value=\"7\"/></sampler>")).settings;
         assert_eq!((settings.sampler, settings.samples, settings.seed), (expected, 4, 7));
     }
 }

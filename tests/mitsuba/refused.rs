@@ -60,10 +60,22 @@ fn unknown_properties_are_told_with_the_nearest_and_all_others() {
         "<bsdf type=\"diffuse\"><rgb name=\"reflectence\" value=\"1\"/></bsdf>",
         "a.xml:2:33: the bsdf \"diffuse\" has no property \"reflectence\"; it has reflectance; did you mean \"reflectance\"?",
     );
-    refused("<bsdf type=\"null\"><float name=\"a\" value=\"1\"/></bsdf>", "a.xml:2:32: the bsdf \"null\" has no property \"a\"; it has none");
-    refused("<bsdf type=\"diffuse\"><rgb value=\"1\"/></bsdf>", "a.xml:2:22: <rgb> in the bsdf \"diffuse\" needs a name; it has reflectance");
-    refused("<bsdf type=\"diffuse\"><bsdf type=\"null\"/></bsdf>", "a.xml:2:22: <bsdf> in the bsdf \"diffuse\", which holds no objects");
-    refused("<bsdf type=\"diffuse\" colour=\"1\"/>", "a.xml:2:30: <bsdf> has no attribute \"colour\"; it has type, id, name");
+    refused(
+        "<bsdf type=\"null\"><float name=\"a\" value=\"1\"/></bsdf>",
+        "a.xml:2:32: the bsdf \"null\" has no property \"a\"; it has none",
+    );
+    refused(
+        "<bsdf type=\"diffuse\"><rgb value=\"1\"/></bsdf>",
+        "a.xml:2:22: <rgb> in the bsdf \"diffuse\" needs a name; it has reflectance",
+    );
+    refused(
+        "<bsdf type=\"diffuse\"><bsdf type=\"null\"/></bsdf>",
+        "a.xml:2:22: <bsdf> in the bsdf \"diffuse\", which holds no objects",
+    );
+    refused(
+        "<bsdf type=\"diffuse\" colour=\"1\"/>",
+        "a.xml:2:30: <bsdf> has no attribute \"colour\"; it has type, id, name",
+    );
 }
 
 #[test]
@@ -73,7 +85,10 @@ fn values_of_the_wrong_type_or_range_are_refused_where_they_stand() {
         ("<float name=\"radius\" value=\"nan\"/>", "a.xml:2:50: expected a number"),
         ("<float name=\"radius\" value=\"-1\"/>", "a.xml:2:22: \"radius\" must be a number from"),
         ("<string name=\"radius\" value=\"1\"/>", "a.xml:2:22: \"radius\" is a number, found <string>"),
-        ("<float name=\"radius\" value=\"1\"/><float name=\"radius\" value=\"2\"/>", "a.xml:2:54: \"radius\" is written twice"),
+        (
+            "<float name=\"radius\" value=\"1\"/><float name=\"radius\" value=\"2\"/>",
+            "a.xml:2:54: \"radius\" is written twice",
+        ),
         ("<boolean name=\"flip_normals\" value=\"yes\"/>", "a.xml:2:58: \"flip_normals\" must be true or false"),
         ("<point name=\"center\" value=\"1, 2\"/>", "a.xml:2:50: expected 1 or 3 numbers, found 2"),
         ("<point name=\"center\" value=\"1\" x=\"2\"/>", "a.xml:2:56: \"value\" and \"x\", \"y\", \"z\" exclude"),
@@ -81,7 +96,11 @@ fn values_of_the_wrong_type_or_range_are_refused_where_they_stand() {
     ] {
         refused(&format!("<shape type=\"sphere\">{element}</shape>"), expected);
     }
-    refused(&"<shape type=\"serialized\"><integer name=\"shape_index\" value=\"1.5\"/></shape>".replace("serialized\">", "serialized\"><string name=\"filename\" value=\"a.xml\"/>"), "a.xml:2:100: \"shape_index\" must be an integer");
+    refused(
+        &"<shape type=\"serialized\"><integer name=\"shape_index\" value=\"1.5\"/></shape>"
+            .replace("serialized\">", "serialized\"><string name=\"filename\" value=\"a.xml\"/>"),
+        "a.xml:2:100: \"shape_index\" must be an integer",
+    );
 }
 
 #[test]
@@ -91,7 +110,10 @@ fn colours_and_spectra_that_make_no_sense_are_refused() {
         ("<rgb name=\"reflectance\" value=\"#12345\"/>", "a.xml:2:53: expected \"#rrggbb\""),
         ("<rgb name=\"reflectance\" value=\"2\"/>", "a.xml:2:53: a reflectance is at most 1"),
         ("<rgb name=\"reflectance\" value=\"-1\"/>", "a.xml:2:53: a colour has no negative part"),
-        ("<spectrum name=\"reflectance\" value=\"400:1, 500\"/>", "a.xml:2:58: expected wavelength:value, found \"500\""),
+        (
+            "<spectrum name=\"reflectance\" value=\"400:1, 500\"/>",
+            "a.xml:2:58: expected wavelength:value, found \"500\"",
+        ),
         ("<spectrum name=\"reflectance\" value=\"500:1, 400:1\"/>", "a.xml:2:58: the wavelengths of a spectrum ascend"),
         ("<spectrum name=\"reflectance\" value=\"500:1\"/>", "a.xml:2:58: a spectrum has 2 to 65536 wavelengths"),
         ("<spectrum name=\"reflectance\" value=\"grey\"/>", "a.xml:2:58: a spectrum is a number or a list"),
@@ -140,7 +162,10 @@ fn names_without_an_object_and_names_taken_twice_are_refused() {
 
 #[test]
 fn parameters_without_a_value_and_defines_without_a_parameter_are_refused() {
-    refused("<default name=\"spp\" value=\"1\"/><bsdf type=\"$sp\"/>", "a.xml:2:44: the parameter \"$sp\" has no value");
+    refused(
+        "<default name=\"spp\" value=\"1\"/><bsdf type=\"$sp\"/>",
+        "a.xml:2:44: the parameter \"$sp\" has no value",
+    );
     let text = scene_text(&format!("<default name=\"spp\" value=\"1\"/>{LEAST}"));
     let found = refusal(try_files(&[("a.xml", &text)], &[("ssp", "4")]));
     assert_eq!(found, "a.xml: -D ssp: the scene has no parameter \"ssp\"; it has spp");
@@ -187,10 +212,22 @@ fn deep_nesting_and_growing_parameters_end() {
 #[test]
 fn instances_groups_and_emitters_in_the_wrong_place_are_refused() {
     refused("<shape type=\"instance\"/>", "a.xml:2:1: an instance refers to a shapegroup");
-    refused("<shape type=\"cube\" id=\"a\"/><shape type=\"instance\"><ref id=\"a\"/></shape>", "a.xml:2:51: an instance shows a shapegroup");
-    refused("<shape type=\"cube\"><emitter type=\"point\"/></shape>", "a.xml:2:20: a shape has an emitter of type \"area\"");
-    refused("<emitter type=\"constant\"/><emitter type=\"constant\"/>", "a.xml:2:27: a second emitter around the scene");
-    refused("<shape type=\"cube\"><bsdf type=\"null\"/><bsdf type=\"null\"/></shape>", "a.xml:2:39: a second bsdf in the shape \"cube\"");
+    refused(
+        "<shape type=\"cube\" id=\"a\"/><shape type=\"instance\"><ref id=\"a\"/></shape>",
+        "a.xml:2:51: an instance shows a shapegroup",
+    );
+    refused(
+        "<shape type=\"cube\"><emitter type=\"point\"/></shape>",
+        "a.xml:2:20: a shape has an emitter of type \"area\"",
+    );
+    refused(
+        "<emitter type=\"constant\"/><emitter type=\"constant\"/>",
+        "a.xml:2:27: a second emitter around the scene",
+    );
+    refused(
+        "<shape type=\"cube\"><bsdf type=\"null\"/><bsdf type=\"null\"/></shape>",
+        "a.xml:2:39: a second bsdf in the shape \"cube\"",
+    );
 }
 
 #[test]

@@ -47,7 +47,9 @@ impl Loader<'_> {
     /// `two_sided`: a `twosided` is around it.
     fn build(&mut self, node: Node, two_sided: bool, nesting: u32) -> Result<Material> {
         if nesting > NESTING_MAX {
-            return Err(self.document.bad(node, format!("more than {NESTING_MAX} materials within each other; does one hold itself?")));
+            return Err(self
+                .document
+                .bad(node, format!("more than {NESTING_MAX} materials within each other; does one hold itself?")));
         }
         let object = Object::open(self.document, node)?;
         let name = self.document.attribute(node, "id").unwrap_or(object.plugin.name).to_owned();
@@ -57,7 +59,8 @@ impl Loader<'_> {
             match nested.len() == count {
                 true => Ok(nested.iter().map(|child| child.node).collect::<Vec<Node>>()),
                 false => {
-                    let message = format!("the bsdf {:?} holds {count} bsdf, found {}", object.plugin.name, nested.len());
+                    let message =
+                        format!("the bsdf {:?} holds {count} bsdf, found {}", object.plugin.name, nested.len());
                     Err(self.document.bad(node, message))
                 }
             }
@@ -117,7 +120,11 @@ impl Loader<'_> {
             }
             "principled" => self.principled(&object, &mut material)?,
             "null" => material.model = Model::Null,
-            "twosided" => return self.build(first(1)?[0], true, nesting + 1).map(|inner| Material { name: material.name, ..inner }),
+            "twosided" => {
+                return self
+                    .build(first(1)?[0], true, nesting + 1)
+                    .map(|inner| Material { name: material.name, ..inner });
+            }
             "mask" => {
                 let mut inner = self.build(first(1)?[0], two_sided, nesting + 1)?;
                 inner.opacity *= self.scalar(&object, &mut inner, "opacity", 0.5, Parameter::Opacity)?;
@@ -141,7 +148,8 @@ impl Loader<'_> {
                 let Some(source) = source.filter(|source| self.document.tag(*source) == "texture") else {
                     return Err(self.document.bad(node, format!("the bsdf {kind:?} needs a texture")));
                 };
-                let scale = if kind == "bumpmap" { object.float_in("scale", -1e6, 1e6)?.unwrap_or(1.0) as f32 } else { 1.0 };
+                let scale =
+                    if kind == "bumpmap" { object.float_in("scale", -1e6, 1e6)?.unwrap_or(1.0) as f32 } else { 1.0 };
                 let texture = self.texture(source)?;
                 inner.textures.push(TextureBinding { parameter, texture, channel: Channel::Rgb, scale });
                 return Ok(inner);
@@ -202,7 +210,14 @@ impl Loader<'_> {
     }
 
     /// A number within 0 and 1 or a texture, whose constant is 1.
-    fn scalar(&mut self, object: &Object, material: &mut Material, name: &str, default: f64, parameter: Parameter) -> Result<f32> {
+    fn scalar(
+        &mut self,
+        object: &Object,
+        material: &mut Material,
+        name: &str,
+        default: f64,
+        parameter: Parameter,
+    ) -> Result<f32> {
         let Some(node) = object.property(name) else { return Ok(default as f32) };
         if self.document.tag(node) == "texture" {
             let texture = self.texture(node)?;
@@ -210,7 +225,11 @@ impl Loader<'_> {
             material.textures.push(TextureBinding { parameter, texture, channel: Channel::R, scale: 1.0 });
             return Ok(1.0);
         }
-        let low = if matches!(parameter, Parameter::Roughness | Parameter::RoughnessU | Parameter::RoughnessV) { ALPHA_MIN } else { 0.0 };
+        let low = if matches!(parameter, Parameter::Roughness | Parameter::RoughnessU | Parameter::RoughnessV) {
+            ALPHA_MIN
+        } else {
+            0.0
+        };
         Ok(object.float_in(name, 0.0, 1.0)?.unwrap_or(default).max(low) as f32)
     }
 

@@ -58,7 +58,11 @@ fn spectrum(document: &Document, node: Node, role: Role) -> Result<Rgb> {
     if !text.contains(':') {
         return match parse(text) {
             Some(value) => Ok(Rgb::splat(value as f32)),
-            None => Err(document.bad_value(node, "value", format!("a spectrum is a number or a list \"400:0.1, 500:0.2\", found {text:?}"))),
+            None => Err(document.bad_value(
+                node,
+                "value",
+                format!("a spectrum is a number or a list \"400:0.1, 500:0.2\", found {text:?}"),
+            )),
         };
     }
     let pair = |word: &str| word.split_once(':').and_then(|(w, v)| Some((parse(w)?, parse(v)?)));
@@ -83,7 +87,10 @@ fn spectrum_file(document: &Document, node: Node, role: Role) -> Result<Rgb> {
         let numbers: Option<Vec<f64>> = line.split_whitespace().map(parse).collect();
         let Some([wavelength, value]) = numbers.as_deref() else {
             let location = crate::scene::Location { file: path, line: index as u32 + 1, column: 1 };
-            return Err(crate::scene::SceneError::bad(location, format!("expected a wavelength and a value, found {line:?}")));
+            return Err(crate::scene::SceneError::bad(
+                location,
+                format!("expected a wavelength and a value, found {line:?}"),
+            ));
         };
         points.push((*wavelength, *value));
     }
@@ -136,7 +143,10 @@ impl Object<'_> {
         named_index(text).ok_or_else(|| {
             let names = INDICES.iter().map(|(name, _)| *name);
             let hint = hint(text, names.clone());
-            let message = format!("{name:?} is a number or one of {}, found {text:?}{hint}", names.collect::<Vec<_>>().join(", "));
+            let message = format!(
+                "{name:?} is a number or one of {}, found {text:?}{hint}",
+                names.collect::<Vec<_>>().join(", ")
+            );
             self.document.bad_value(node, "value", message)
         })
     }

@@ -73,7 +73,12 @@ struct Loader {
 impl Document {
     /// Reads the file and all that it includes. `defines`: parameters from the command line.
     pub fn read(path: &Path, defines: &[(String, String)]) -> Result<Self> {
-        let root = Element { tag: "scene".to_owned(), attributes: Vec::new(), children: Vec::new(), place: Place { file: 0, line: 1, column: 1 } };
+        let root = Element {
+            tag: "scene".to_owned(),
+            attributes: Vec::new(),
+            children: Vec::new(),
+            place: Place { file: 0, line: 1, column: 1 },
+        };
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let document =
             Self { files: Vec::new(), elements: vec![root], ids: HashMap::new(), folders: vec![folder], root: Node(0) };
@@ -83,7 +88,8 @@ impl Document {
         for (name, _) in defines {
             if !loader.named.contains(name) {
                 let names: Vec<&str> = loader.named.iter().map(String::as_str).collect();
-                let known = if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) };
+                let known =
+                    if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) };
                 let message = format!("-D {name}: the scene has no parameter {name:?}; {known}");
                 return Err(SceneError::bad(Location::file(path), message));
             }
@@ -110,7 +116,8 @@ impl Document {
 
     /// An attribute that must be there.
     pub fn required(&self, node: Node, name: &str) -> Result<&str> {
-        self.attribute(node, name).ok_or_else(|| self.bad(node, format!("<{}> needs the attribute {name:?}", self.tag(node))))
+        self.attribute(node, name)
+            .ok_or_else(|| self.bad(node, format!("<{}> needs the attribute {name:?}", self.tag(node))))
     }
 
     /// Refuses attributes other than these.
@@ -120,7 +127,12 @@ impl Document {
             None => Ok(()),
             Some(attribute) => {
                 let hint = hint(&attribute.name, allowed.iter().copied());
-                let message = format!("<{}> has no attribute {:?}; it has {}{hint}", element.tag, attribute.name, allowed.join(", "));
+                let message = format!(
+                    "<{}> has no attribute {:?}; it has {}{hint}",
+                    element.tag,
+                    attribute.name,
+                    allowed.join(", ")
+                );
                 Err(SceneError::bad(self.location(attribute.place), message))
             }
         }
@@ -168,7 +180,10 @@ impl Document {
             Some(path) => Ok(path),
             None => Err(SceneError::Io {
                 location: self.location_of(node),
-                source: std::io::Error::new(std::io::ErrorKind::NotFound, format!("no file {name:?} beside the scene or in a <path> of it")),
+                source: std::io::Error::new(
+                    std::io::ErrorKind::NotFound,
+                    format!("no file {name:?} beside the scene or in a <path> of it"),
+                ),
             }),
         }
     }
@@ -185,7 +200,10 @@ impl Loader {
         let bytes = read_bytes(path)?;
         self.bytes += bytes.len();
         if self.bytes > BYTES_MAX {
-            return Err(SceneError::bad(Location::file(path), format!("a scene of more than {BYTES_MAX} bytes of XML")));
+            return Err(SceneError::bad(
+                Location::file(path),
+                format!("a scene of more than {BYTES_MAX} bytes of XML"),
+            ));
         }
         let file = self.document.files.len() as u32;
         self.document.files.push(path.to_owned());
@@ -200,7 +218,11 @@ impl Loader {
         let root = xml.root_element();
         if root.tag_name().name() != "scene" {
             return match depth {
-                0 => Err(self.document_error(&source, root, format!("the root of a scene is <scene>, found <{}>", root.tag_name().name()))),
+                0 => Err(self.document_error(
+                    &source,
+                    root,
+                    format!("the root of a scene is <scene>, found <{}>", root.tag_name().name()),
+                )),
                 _ => self.read_element(&source, root, parent, depth, 1),
             };
         }
@@ -209,13 +231,25 @@ impl Loader {
             self.document.elements[0].place = place;
         }
         match root.attribute("version") {
-            Some(version) if version.split('.').next().and_then(|major| major.parse::<u32>().ok()).is_some_and(|major| major >= 2) => {}
+            Some(version)
+                if version
+                    .split('.')
+                    .next()
+                    .and_then(|major| major.parse::<u32>().ok())
+                    .is_some_and(|major| major >= 2) => {}
             Some(version) => {
-                let message = format!("a scene of version {version:?}; gonio reads Mitsuba 2 and 3 (version=\"3.0.0\")");
+                let message =
+                    format!("a scene of version {version:?}; gonio reads Mitsuba 2 and 3 (version=\"3.0.0\")");
                 return Err(self.document_error(&source, root, message));
             }
             None if depth > 0 => {}
-            None => return Err(self.document_error(&source, root, "<scene> needs the attribute \"version\" (\"3.0.0\")".to_owned())),
+            None => {
+                return Err(self.document_error(
+                    &source,
+                    root,
+                    "<scene> needs the attribute \"version\" (\"3.0.0\")".to_owned(),
+                ));
+            }
         }
         for child in root.children() {
             self.read_element(&source, child, parent, depth, 1)?;
@@ -228,7 +262,14 @@ impl Loader {
     }
 
     /// Adds one element with all it holds to the children of `parent`; `nesting`: elements around it.
-    fn read_element(&mut self, source: &Source, xml: roxmltree::Node, parent: Node, depth: usize, nesting: usize) -> Result<()> {
+    fn read_element(
+        &mut self,
+        source: &Source,
+        xml: roxmltree::Node,
+        parent: Node,
+        depth: usize,
+        nesting: usize,
+    ) -> Result<()> {
         if xml.is_text() && !xml.text().unwrap_or("").trim().is_empty() {
             return Err(self.document_error(source, xml, "text between elements has no meaning".to_owned()));
         }
@@ -237,7 +278,10 @@ impl Loader {
         }
         let place = source.place(xml.range().start);
         if nesting > NESTING_MAX {
-            return Err(SceneError::bad(self.document.location(place), format!("more than {NESTING_MAX} elements within each other")));
+            return Err(SceneError::bad(
+                self.document.location(place),
+                format!("more than {NESTING_MAX} elements within each other"),
+            ));
         }
         if self.document.elements.len() >= ELEMENTS_MAX {
             return Err(SceneError::bad(self.document.location(place), format!("more than {ELEMENTS_MAX} elements")));
@@ -258,7 +302,9 @@ impl Loader {
             "alias" => return self.read_alias(node),
             _ => {}
         }
-        if tag != "ref" && let Some(id) = self.document.attribute(node, "id").map(str::to_owned) {
+        if tag != "ref"
+            && let Some(id) = self.document.attribute(node, "id").map(str::to_owned)
+        {
             self.add_id(id, node, node)?;
         }
         for child in xml.children() {
@@ -279,7 +325,9 @@ impl Loader {
             let (name, next) = braced.unwrap_or_else(|| after.split_at(word));
             let Some(parameter) = self.parameters.get(name) else {
                 let hint = hint(name, self.parameters.keys().map(String::as_str));
-                let message = format!("the parameter \"${name}\" has no value: give it with <default> before or with -D {name}=...{hint}");
+                let message = format!(
+                    "the parameter \"${name}\" has no value: give it with <default> before or with -D {name}=...{hint}"
+                );
                 return Err(SceneError::bad(self.document.location(place), message));
             };
             self.named.insert(name.to_owned());
@@ -313,7 +361,9 @@ impl Loader {
             return Err(document.bad(node, "<path> stands directly in <scene>"));
         }
         let beside = document.files[document.element(node).place.file as usize].parent().unwrap_or(Path::new(""));
-        let mut places = std::iter::once(beside).chain(document.folders.iter().rev().map(PathBuf::as_path)).map(|folder| folder.join(value));
+        let mut places = std::iter::once(beside)
+            .chain(document.folders.iter().rev().map(PathBuf::as_path))
+            .map(|folder| folder.join(value));
         let Some(folder) = places.find(|folder| folder.is_dir()) else {
             return Err(document.bad_value(node, "value", format!("there is no folder {value:?}")));
         };
@@ -324,7 +374,10 @@ impl Loader {
     fn read_include(&mut self, node: Node, parent: Node, depth: usize) -> Result<()> {
         self.document.check_attributes(node, &["filename"])?;
         if depth + 1 > INCLUDE_DEPTH_MAX {
-            return Err(self.document.bad(node, format!("more than {INCLUDE_DEPTH_MAX} files within each other; does one include itself?")));
+            return Err(self.document.bad(
+                node,
+                format!("more than {INCLUDE_DEPTH_MAX} files within each other; does one include itself?"),
+            ));
         }
         let path = self.document.find_file(node, "filename")?;
         self.read_file(&path, parent, depth + 1)
@@ -335,7 +388,11 @@ impl Loader {
         let id = self.document.required(node, "id")?;
         let Some(target) = self.document.ids.get(id).copied() else {
             let hint = hint(id, self.document.ids.keys().map(String::as_str));
-            return Err(self.document.bad_value(node, "id", format!("there is no object with the id {id:?} above{hint}")));
+            return Err(self.document.bad_value(
+                node,
+                "id",
+                format!("there is no object with the id {id:?} above{hint}"),
+            ));
         };
         let name = self.document.required(node, "as")?.to_owned();
         self.add_id(name, target, node)
@@ -344,7 +401,11 @@ impl Loader {
     /// Makes `id` a name of `target`; `at` says so.
     fn add_id(&mut self, id: String, target: Node, at: Node) -> Result<()> {
         if let Some(other) = self.document.ids.get(&id) {
-            let message = format!("the id {id:?} is taken by <{}> at {}", self.document.tag(*other), self.document.location_of(*other));
+            let message = format!(
+                "the id {id:?} is taken by <{}> at {}",
+                self.document.tag(*other),
+                self.document.location_of(*other)
+            );
             return Err(self.document.bad_value(at, "id", message));
         }
         self.document.ids.insert(id, target);

@@ -110,7 +110,8 @@ impl Loader<'_> {
         match self.environment.replace(object.node) {
             None => Ok(()),
             Some(first) => {
-                let message = format!("a second emitter around the scene; the first is at {}", self.document.location_of(first));
+                let message =
+                    format!("a second emitter around the scene; the first is at {}", self.document.location_of(first));
                 Err(self.document.bad(object.node, message))
             }
         }

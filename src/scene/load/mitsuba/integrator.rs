@@ -20,7 +20,9 @@ fn read(document: &Document, node: Node, scene: &mut Scene, nesting: u32) -> Res
         kind @ ("moment" | "aov") => {
             if kind == "aov" {
                 let location = document.location_of(node);
-                scene.warnings.push(format!("{location}: the integrator \"aov\" is left out; --aov gives further layers"));
+                scene
+                    .warnings
+                    .push(format!("{location}: the integrator \"aov\" is left out; --aov gives further layers"));
             }
             match object.only("integrator")? {
                 Some(child) if nesting < NESTING_MAX => read(document, child.node, scene, nesting + 1),
@@ -30,19 +32,24 @@ fn read(document: &Document, node: Node, scene: &mut Scene, nesting: u32) -> Res
         }
         kind => {
             // Mitsuba counts the edges of a path, gonio the surfaces it scatters at: one less. -1 has no end there.
-            let edges = if kind == "direct" { Some(2) } else { object.integer("max_depth", -1, i64::from(i32::MAX))? };
+            let edges =
+                if kind == "direct" { Some(2) } else { object.integer("max_depth", -1, i64::from(i32::MAX))? };
             let depth = match edges {
                 Some(edges) if edges >= 0 => (edges - 1).max(0).min(i64::from(DEPTH_MAX)) as u32,
                 _ => DEPTH_MAX,
             };
             scene.settings.integrator = if kind == "direct" { Integrator::Direct } else { Integrator::Path };
             scene.settings.max_depth = depth;
-            if kind != "direct" && let Some(rr_depth) = object.integer("rr_depth", 0, i64::from(i32::MAX))? {
+            if kind != "direct"
+                && let Some(rr_depth) = object.integer("rr_depth", 0, i64::from(i32::MAX))?
+            {
                 scene.settings.rr_depth = rr_depth.min(i64::from(DEPTH_MAX) + 1) as u32;
             }
             if object.boolean("hide_emitters")? == Some(true) {
                 let location = document.location_of(node);
-                scene.warnings.push(format!("{location}: \"hide_emitters\" has no effect; --transparent leaves the background out"));
+                scene.warnings.push(format!(
+                    "{location}: \"hide_emitters\" has no effect; --transparent leaves the background out"
+                ));
             }
             Ok(())
         }

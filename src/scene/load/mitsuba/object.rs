@@ -9,8 +9,19 @@ use glam::DVec3;
 
 /// Elements that are objects.
 pub const CLASSES: &[&str] = &[
-    "shape", "bsdf", "emitter", "sensor", "film", "rfilter", "sampler", "integrator", "texture", "spectrum", "medium",
-    "phase", "volume",
+    "shape",
+    "bsdf",
+    "emitter",
+    "sensor",
+    "film",
+    "rfilter",
+    "sampler",
+    "integrator",
+    "texture",
+    "spectrum",
+    "medium",
+    "phase",
+    "volume",
 ];
 
 /// Elements that are properties.
@@ -100,7 +111,9 @@ impl<'a> Object<'a> {
                 [] => "holds no objects".to_owned(),
                 classes => format!("holds {}", classes.join(", ")),
             };
-            return self.document.bad(child.written, format!("<{tag}> in the {class} {plugin:?}, which {holds}{known}"));
+            return self
+                .document
+                .bad(child.written, format!("<{tag}> in the {class} {plugin:?}, which {holds}{known}"));
         }
         let names: Vec<&str> = self.plugin.properties().map(|property| property.name).collect();
         let hint = hint(child.name, names.iter().copied());
@@ -132,9 +145,9 @@ impl<'a> Object<'a> {
         match self.nested(class).as_slice() {
             [] => Ok(None),
             [child] => Ok(Some(*child)),
-            [_, second, ..] => {
-                Err(self.document.bad(second.written, format!("a second {class} in the {} {:?}", self.plugin.class, self.plugin.name)))
-            }
+            [_, second, ..] => Err(self
+                .document
+                .bad(second.written, format!("a second {class} in the {} {:?}", self.plugin.class, self.plugin.name))),
         }
     }
 
@@ -178,7 +191,11 @@ impl<'a> Object<'a> {
         let text = value(self.document, node)?;
         match text.trim().parse::<i64>() {
             Ok(number) if (low..=high).contains(&number) => Ok(Some(number)),
-            _ => Err(self.document.bad_value(node, "value", format!("{name:?} must be an integer from {low} to {high}, found {text:?}"))),
+            _ => Err(self.document.bad_value(
+                node,
+                "value",
+                format!("{name:?} must be an integer from {low} to {high}, found {text:?}"),
+            )),
         }
     }
 
@@ -187,7 +204,9 @@ impl<'a> Object<'a> {
         match value(self.document, node)?.to_lowercase().as_str() {
             "true" => Ok(Some(true)),
             "false" => Ok(Some(false)),
-            other => Err(self.document.bad_value(node, "value", format!("{name:?} must be true or false, found {other:?}"))),
+            other => {
+                Err(self.document.bad_value(node, "value", format!("{name:?} must be true or false, found {other:?}")))
+            }
         }
     }
 

@@ -91,7 +91,12 @@ const fn ignored(name: &'static str, kind: Kind) -> Property {
     Property { name, kind, default: NO_EFFECT }
 }
 
-const fn plugin(class: &'static str, name: &'static str, properties: &'static [&'static [Property]], nested: &'static [&'static str]) -> Plugin {
+const fn plugin(
+    class: &'static str,
+    name: &'static str,
+    properties: &'static [&'static [Property]],
+    nested: &'static [&'static str],
+) -> Plugin {
     Plugin { class, name, properties, nested }
 }
 
@@ -99,10 +104,7 @@ use Kind::{Boolean, Color, Float, Index, Integer, Scalar, Text, Texture, Transfo
 
 const TO_WORLD: &[Property] = &[p("to_world", Transform, "identity")];
 const SHAPE: &[Property] = &[p("to_world", Transform, "identity"), p("flip_normals", Boolean, "false")];
-const MESH: &[Property] = &[
-    p("filename", Text, ""),
-    p("face_normals", Boolean, "false"),
-];
+const MESH: &[Property] = &[p("filename", Text, ""), p("face_normals", Boolean, "false")];
 const FLIP_OBJ: &[Property] = &[p("flip_tex_coords", Boolean, "true")];
 const FLIP_PLY: &[Property] = &[p("flip_tex_coords", Boolean, "false")];
 const SHAPE_PARTS: &[&str] = &["bsdf", "emitter"];
@@ -128,11 +130,8 @@ const SAMPLER: &[Property] = &[p("sample_count", Integer, "4"), p("seed", Intege
 const PATH: &[Property] =
     &[p("max_depth", Integer, "-1"), p("rr_depth", Integer, "5"), p("hide_emitters", Boolean, "false")];
 
-const MICROFACETS: &[Property] = &[
-    p("distribution", Text, "beckmann"),
-    p("alpha", Scalar, "0.1"),
-    ignored("sample_visible", Boolean),
-];
+const MICROFACETS: &[Property] =
+    &[p("distribution", Text, "beckmann"), p("alpha", Scalar, "0.1"), ignored("sample_visible", Boolean)];
 const ANISOTROPIC: &[Property] = &[p("alpha_u", Scalar, "0.1"), p("alpha_v", Scalar, "0.1")];
 const GLASS: &[Property] = &[p("int_ior", Index, "bk7"), p("ext_ior", Index, "air")];
 const SPECULAR: &[Property] = &[p("specular_reflectance", Color, "1")];
@@ -205,7 +204,11 @@ pub const PLUGINS: &[Plugin] = &[
         "emitter",
         "spot",
         &[
-            &[p("intensity", Color, "1"), p("cutoff_angle", Float, "20"), p("beam_width", Float, "3/4 of cutoff_angle")],
+            &[
+                p("intensity", Color, "1"),
+                p("cutoff_angle", Float, "20"),
+                p("beam_width", Float, "3/4 of cutoff_angle"),
+            ],
             TO_WORLD,
         ],
         &[],

@@ -63,7 +63,12 @@ fn read_camera(object: &Object, film: &Film) -> Result<Camera> {
         }
     }
     let eye = place.translation;
-    Ok(Camera { eye: eye.as_vec3(), target: (eye + forward / length(forward)).as_vec3(), up: (up / length(up)).as_vec3(), projection })
+    Ok(Camera {
+        eye: eye.as_vec3(),
+        target: (eye + forward / length(forward)).as_vec3(),
+        up: (up / length(up)).as_vec3(),
+        projection,
+    })
 }
 
 /// The vertical field of view in radians.
@@ -78,7 +83,9 @@ fn read_fov(object: &Object, film: &Film) -> Result<f64> {
             let text = object.text("focal_length")?.unwrap_or("50mm");
             let number = text.trim().strip_suffix("mm").unwrap_or(text).trim().parse::<f64>().ok();
             let Some(millimetres) = number.filter(|v| (1e-3..=1e6).contains(v)) else {
-                return Err(object.bad("focal_length", format!("expected millimetres such as \"50mm\", found {text:?}")));
+                return Err(
+                    object.bad("focal_length", format!("expected millimetres such as \"50mm\", found {text:?}"))
+                );
             };
             // Of a 36 x 24 mm picture, across its diagonal.
             (libm::hypot(36.0, 24.0) / (2.0 * millimetres), "diagonal")

@@ -44,7 +44,9 @@ fn check_header(bytes: &[u8], start: usize) -> Result<u16, String> {
     let mut cursor = Cursor { bytes: bytes.get(start..).unwrap_or(&[]) };
     let (identifier, version) = (u16::from_le_bytes(cursor.take()?), u16::from_le_bytes(cursor.take()?));
     if identifier != IDENTIFIER {
-        return Err(format!("byte {start}: not a serialized mesh: it begins with {identifier:#06x}, not {IDENTIFIER:#06x}"));
+        return Err(format!(
+            "byte {start}: not a serialized mesh: it begins with {identifier:#06x}, not {IDENTIFIER:#06x}"
+        ));
     }
     match version {
         3 | 4 => Ok(version),
@@ -69,8 +71,12 @@ fn start_of(bytes: &[u8], version: u16, index: u32) -> Result<usize, String> {
         return Err(format!("there is no mesh {index}: the file has {count}, counted from 0"));
     }
     let mut cursor = Cursor { bytes: &bytes[list + index as usize * width..] };
-    let start = if version == 4 { u64::from_le_bytes(cursor.take()?) } else { u32::from_le_bytes(cursor.take()?).into() };
-    usize::try_from(start).ok().filter(|start| *start < list).ok_or_else(|| format!("mesh {index} starts at byte {start}, outside the file"))
+    let start =
+        if version == 4 { u64::from_le_bytes(cursor.take()?) } else { u32::from_le_bytes(cursor.take()?).into() };
+    usize::try_from(start)
+        .ok()
+        .filter(|start| *start < list)
+        .ok_or_else(|| format!("mesh {index} starts at byte {start}, outside the file"))
 }
 
 fn parse(cursor: &mut Cursor, version: u16) -> Result<Mesh, String> {
@@ -84,10 +90,14 @@ fn parse(cursor: &mut Cursor, version: u16) -> Result<Mesh, String> {
     let (vertices, faces) = (u64::from_le_bytes(cursor.take()?), u64::from_le_bytes(cursor.take()?));
     let double = flags & DOUBLE != 0;
     let scalar = if double { 8 } else { 4 };
-    let per_vertex = scalar * (3 + if flags & HAS_NORMALS != 0 { 3 } else { 0 } + if flags & HAS_UVS != 0 { 2 } else { 0 } + if flags & HAS_COLORS != 0 { 3 } else { 0 });
+    let per_vertex = scalar
+        * (3 + if flags & HAS_NORMALS != 0 { 3 } else { 0 }
+            + if flags & HAS_UVS != 0 { 2 } else { 0 }
+            + if flags & HAS_COLORS != 0 { 3 } else { 0 });
     let needed = vertices.checked_mul(per_vertex).zip(faces.checked_mul(12)).and_then(|(a, b)| a.checked_add(b));
     if needed.is_none_or(|needed| needed > cursor.bytes.len() as u64) || vertices >= u64::from(u32::MAX) {
-        let message = format!("it claims {vertices} vertices and {faces} faces, but {} bytes follow", cursor.bytes.len());
+        let message =
+            format!("it claims {vertices} vertices and {faces} faces, but {} bytes follow", cursor.bytes.len());
         return Err(message);
     }
     let vertices = vertices as usize;

@@ -27,7 +27,9 @@ impl Loader<'_> {
                 };
                 let group = Object::open(self.document, child.node)?;
                 if group.plugin.name != "shapegroup" {
-                    return Err(self.document.bad(child.written, format!("an instance shows a shapegroup, found {:?}", group.plugin.name)));
+                    return Err(self
+                        .document
+                        .bad(child.written, format!("an instance shows a shapegroup, found {:?}", group.plugin.name)));
                 }
                 let place = object.transform("to_world")?;
                 for shape in group.nested("shape") {
@@ -54,7 +56,13 @@ impl Loader<'_> {
         let (geometry, own) = self.geometry(shape)?;
         let transform = own.then(shape.transform("to_world")?).then(place);
         let name = self.document.attribute(shape.node, "id").unwrap_or(shape.plugin.name).to_owned();
-        self.scene.objects.push(crate::scene::Object { name, geometry, transform, material: Some(material), casts_shadow: None });
+        self.scene.objects.push(crate::scene::Object {
+            name,
+            geometry,
+            transform,
+            material: Some(material),
+            casts_shadow: None,
+        });
         Ok(())
     }
 
@@ -122,7 +130,8 @@ impl Loader<'_> {
         let kind = shape.plugin.name;
         let flat = shape.boolean("face_normals")?.unwrap_or(false);
         let turned = shape.boolean("flip_tex_coords")?.unwrap_or(kind == "obj");
-        let index = if kind == "serialized" { shape.integer("shape_index", 0, 1 << 20)?.unwrap_or(0) as u32 } else { 0 };
+        let index =
+            if kind == "serialized" { shape.integer("shape_index", 0, 1 << 20)?.unwrap_or(0) as u32 } else { 0 };
         let colored = match shape.only("bsdf")? {
             Some(bsdf) => self.shows_vertex_colors(bsdf.node, 0)?,
             None => false,
@@ -288,7 +297,8 @@ fn cylinder() -> Mesh {
         mesh.normals.extend([normal.as_vec3(); 2]);
         mesh.uvs.extend([Vec2::new(turn, 1.0), Vec2::new(turn, 0.0)]);
     }
-    mesh.triangles = (0..SEGMENTS).flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 1]]).collect();
+    mesh.triangles =
+        (0..SEGMENTS).flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 1]]).collect();
     mesh
 }
 

@@ -36,7 +36,9 @@ impl Textures {
             _ => {
                 let name = object.text("name")?.unwrap_or("vertex_color");
                 if name != "vertex_color" {
-                    return Err(object.bad("name", format!("only the attribute \"vertex_color\" is read, found {name:?}")));
+                    return Err(
+                        object.bad("name", format!("only the attribute \"vertex_color\" is read, found {name:?}"))
+                    );
                 }
                 return Ok(Varying::VertexColor(object.float_in("scale", 0.0, 1e6)?.unwrap_or(1.0) as f32));
             }
