@@ -340,8 +340,25 @@ fn a_checkerboard_has_its_first_colour_where_u_and_v_are_small() {
     let texture = &scene.textures[0];
     // Mitsuba's v' = 4 v + 0.5 with v = 1 - v here, and the same of v'.
     assert_eq!((texture.scale, texture.offset), ([8.0, 4.0], [0.0, -3.5]));
+    assert_eq!(texture.shear, [0.0, 0.0]);
     let TextureData::Float(texels) = &texture.data else { panic!("{texture:?}") };
     assert_eq!((texels[0][0], texels[1][0], texture.bilinear), (0.4, 0.2, false));
+}
+
+#[test]
+fn a_texture_is_turned_by_to_uv() {
+    let scene = read(
+        "<sensor type=\"perspective\"/><shape type=\"cube\"><bsdf type=\"diffuse\"><texture type=\"checkerboard\" name=\"reflectance\">\
+         <transform name=\"to_uv\"><matrix value=\"2 3 0 5  7 11 0 13  0 0 1 0  0 0 0 1\"/></transform></texture></bsdf></shape>",
+    );
+    let texture = &scene.textures[0];
+    let here = |u: f32, v: f32| {
+        let [s, h, o] = [texture.scale, texture.shear, texture.offset];
+        [u * s[0] + v * h[0] + o[0], v * s[1] + u * h[1] + o[1]]
+    };
+    // Mitsuba's (0.25, 0.5) goes to (2 u + 3 v + 5, 7 u + 11 v + 13).
+    let (u, v) = (0.25, 0.5);
+    assert_eq!(here(u, 1.0 - v), [2.0 * u + 3.0 * v + 5.0, 1.0 - (7.0 * u + 11.0 * v + 13.0)]);
 }
 
 #[test]

@@ -70,7 +70,7 @@ fn accepted(scene: &Path, mean: &Path, variance: &Path, samples: u32) -> f64 {
 fn small_scenes_pass_mitsubas_z_test() {
     let Some(assets) = assets() else { return };
     // Few samples: only gross errors show; `gonio verify --mitsuba` takes as many as Mitsuba's own test.
-    let wanted = ["directional", "textured_diffuse", "orthographic", "roughdielectric"];
+    let wanted = ["directional", "textured_diffuse", "orthographic", "roughdielectric", "pointlight"];
     let mut tested = 0;
     for case in find_cases(&assets.join("mitsuba-ref/tests")).expect("a folder") {
         let name = case.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();

@@ -96,7 +96,11 @@ fn values_of_the_wrong_type_or_range_are_refused_where_they_stand() {
     ] {
         refused(&format!("<shape type=\"sphere\">{element}</shape>"), expected);
     }
-    refused(&"<shape type=\"serialized\"><integer name=\"shape_index\" value=\"1.5\"/></shape>".replace("serialized\">", "serialized\"><string name=\"filename\" value=\"a.xml\"/>"), "a.xml:2:100: \"shape_index\" must be an integer");
+    refused(
+        &"<shape type=\"serialized\"><integer name=\"shape_index\" value=\"1.5\"/></shape>"
+            .replace("serialized\">", "serialized\"><string name=\"filename\" value=\"a.xml\"/>"),
+        "a.xml:2:100: \"shape_index\" must be an integer",
+    );
 }
 
 #[test]
@@ -106,7 +110,10 @@ fn colours_and_spectra_that_make_no_sense_are_refused() {
         ("<rgb name=\"reflectance\" value=\"#12345\"/>", "a.xml:2:53: expected \"#rrggbb\""),
         ("<rgb name=\"reflectance\" value=\"2\"/>", "a.xml:2:53: a reflectance is at most 1"),
         ("<rgb name=\"reflectance\" value=\"-1\"/>", "a.xml:2:53: a colour has no negative part"),
-        ("<spectrum name=\"reflectance\" value=\"400:1, 500\"/>", "a.xml:2:58: expected wavelength:value, found \"500\""),
+        (
+            "<spectrum name=\"reflectance\" value=\"400:1, 500\"/>",
+            "a.xml:2:58: expected wavelength:value, found \"500\"",
+        ),
         ("<spectrum name=\"reflectance\" value=\"500:1, 400:1\"/>", "a.xml:2:58: the wavelengths of a spectrum ascend"),
         ("<spectrum name=\"reflectance\" value=\"500:1\"/>", "a.xml:2:58: a spectrum has 2 to 65536 wavelengths"),
         ("<spectrum name=\"reflectance\" value=\"grey\"/>", "a.xml:2:58: a spectrum is a number or a list"),

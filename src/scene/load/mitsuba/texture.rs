@@ -1,7 +1,6 @@
 //! `<texture>`: pictures and checkerboards, in the house's convention that v = 0 is a picture's bottom row.
 //!
-//! In Mitsuba v = 0 is the top row. Meshes are turned over when they are loaded (v becomes 1 - v), so that `to_uv`, which
-//! says v' = s v + o there, says v' = s v + (1 - s - o) here.
+//! In Mitsuba v = 0 is the top row. Meshes are turned over when they are loaded (v becomes 1 - v), and `to_uv` with them.
 
 use super::document::{Document, Node, Result};
 use super::object::Object;
@@ -84,7 +83,7 @@ impl Textures {
         let modes = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
         let wrap = object.choice("wrap_mode", &modes)?.unwrap_or(Wrap::Repeat);
         (texture.wrap_u, texture.wrap_v) = (wrap, wrap);
-        (texture.scale, texture.offset) = to_uv(object)?;
+        place(&mut texture, object)?;
         Ok(texture)
     }
 }
@@ -96,28 +95,19 @@ fn checkerboard(object: &Object) -> Result<Texture> {
         Ok([color.x, color.y, color.z, 1.0])
     };
     let (a, b) = (color("color0", 0.4)?, color("color1", 0.2)?);
-    let (scale, offset) = to_uv(object)?;
-    Ok(Texture {
-        name: "checkerboard".to_owned(),
-        width: 2,
-        height: 2,
-        data: TextureData::Float(Arc::new(vec![a, b, b, a])),
-        wrap_u: Wrap::Repeat,
-        wrap_v: Wrap::Repeat,
-        bilinear: false,
-        scale,
-        offset,
-        shear: [0.0; 2],
-        mipmap: false,
-    })
+    let mut texture = Texture::new("checkerboard", 2, 2, TextureData::Float(Arc::new(vec![a, b, b, a])));
+    texture.bilinear = false;
+    place(&mut texture, object)?;
+    Ok(texture)
 }
 
-/// Scale and offset of `to_uv`, turned over.
-fn to_uv(object: &Object) -> Result<([f32; 2], [f32; 2])> {
+/// Sets what `to_uv` says: u' = a u + b v + c and v' = d u + e v + f in Mitsuba's coordinates.
+fn place(texture: &mut Texture, object: &Object) -> Result<()> {
     let map = object.transform("to_uv")?.0;
     let (u, v, o) = (map.matrix3.x_axis, map.matrix3.y_axis, map.translation);
-    if u.y.abs() > 1e-9 * u.x.abs() || v.x.abs() > 1e-9 * v.y.abs() {
-        return Err(object.bad("to_uv", "a texture can be scaled and moved, not rotated"));
-    }
-    Ok(([u.x as f32, v.y as f32], [o.x as f32, (1.0 - v.y - o.y) as f32]))
+    texture.scale = [u.x as f32, v.y as f32];
+    // v = 1 - v here, and v' likewise.
+    texture.shear = [-v.x as f32, -u.y as f32];
+    texture.offset = [(v.x + o.x) as f32, (1.0 - v.y - o.y) as f32];
+    Ok(())
 }
