@@ -1,7 +1,7 @@
 //! `[[material]]`.
 
 use super::document::Value;
-use super::format::{LOBE, MATERIAL};
+use super::material_format::{LOBE, MATERIAL};
 use super::keys::Range;
 use super::metal::{METALS, normal_reflectance};
 use super::names::Names;

@@ -9,6 +9,7 @@ mod format;
 mod keys;
 mod light;
 mod material;
+mod material_format;
 mod metal;
 mod names;
 mod object;
