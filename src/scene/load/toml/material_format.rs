@@ -1,6 +1,6 @@
 //! What `[[material]]` and its tables may contain.
 
-use super::keys::{Key, Kind, Range, Section, key};
+use super::keys::{Kind, Range, Section, key};
 
 const POWERS: &[&str] = &["phong", "blinn-phong", "ashikhmin-shirley"];
 const LOCAL: &[&str] = &[
