@@ -279,10 +279,10 @@ fn a_checkerboard_far_away_is_an_even_grey() {
     }
     // At the width of a texel and below, what is there.
     let point = Detail { spacing: Vec2::ZERO, width: 0.5, probes: 1 };
-    assert_eq!(filter_texture(&data.view(), &base, Vec2::new(1.5, 0.5) / 64.0, point).x, 1.0);
+    assert_eq!(filter_texture(&data.view(), &base, Vec2::splat(0.5) / 64.0, point).x, 1.0);
     // Half way from level 0 to level 1.
     let between = Detail { width: std::f32::consts::SQRT_2, ..point };
-    let texel = filter_texture(&data.view(), &base, Vec2::new(1.5, 0.5) / 64.0, between);
+    let texel = filter_texture(&data.view(), &base, Vec2::splat(0.5) / 64.0, between);
     assert!((texel.x - 0.75).abs() < 1e-6, "{texel}");
 }
 
@@ -399,7 +399,8 @@ fn each_parameter_takes_its_texture() {
     let eye = ray(Vec3::new(0.1, 0.2, 3.0), Vec3::NEG_Z);
     for (parameter, texel) in cases {
         let mut data = textured(Some(square(|c| c)), Transform::default(), constant(texel), parameter, 2.0);
-        let plain = Record { specular_color: Vec3::ONE, emission: Vec3::ONE, m0: 0.25, m1: 0.125, ..data.materials[0] };
+        let rough = Record { m0: 0.25, m1: 0.125, m0_v: 0.5, m1_v: 0.75, ..data.materials[0] };
+        let plain = Record { specular_color: Vec3::ONE, emission: Vec3::ONE, ..rough };
         data.materials[0] = plain;
         let (got, ..) = seen(&data, &eye);
         let mut want = plain;
