@@ -2,10 +2,10 @@
 
 #[path = "mitsuba/meaning.rs"]
 mod meaning;
-#[path = "mitsuba/refused.rs"]
-mod refused;
 #[path = "mitsuba/references.rs"]
 mod references;
+#[path = "mitsuba/refused.rs"]
+mod refused;
 #[path = "common/scenes.rs"]
 mod scenes;
 
