@@ -151,7 +151,7 @@ fn names_without_an_object_and_names_taken_twice_are_refused() {
     refused("<shape type=\"cube\"><ref id=\"wod\"/></shape>", "a.xml:2:29: there is no object with the id \"wod\"");
     refused(
         "<bsdf type=\"null\" id=\"a\"/><bsdf type=\"null\" id=\"a\"/>",
-        "a.xml:2:48: the id \"a\" is taken by <bsdf> at",
+        "a.xml:2:49: the id \"a\" is taken by <bsdf> at",
     );
     refused("<alias id=\"a\" as=\"b\"/>", "a.xml:2:12: there is no object with the id \"a\" above");
     refused(
