@@ -4,7 +4,7 @@
 mod device;
 
 use gonio::bake::SceneData;
-use gonio::layout::{Node, PathState, Triangle};
+use gonio::layout::{Node, PathState, SceneHeader, Triangle};
 use gonio::render::vulkan::{
     BindingKind, Bound, BufferSpec, FetchChoice, Instance, Place, STORAGE_FETCH_STORAGE_BUFFERS, SceneBuffers,
     TEXEL_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_TEXEL_BUFFERS, VulkanError, WORKGROUP, bindings,
@@ -34,7 +34,7 @@ fn bytes_survive_the_way_to_the_device_and_back() {
 fn through_the_layout_kernel<T: bytemuck::Pod>(record: u32, records: &[T]) -> Option<Vec<T>> {
     let mut context = device::context()?;
     let words = shaders::kernel("parity/layout", Fetch::Storage).expect("embedded by build.rs");
-    let mut input = vec![0; 256];
+    let mut input = vec![0; size_of::<SceneHeader>()];
     input.extend_from_slice(bytemuck::cast_slice(records));
     let buffers = [BufferSpec::Input(&input), BufferSpec::Output(size_of_val(records) as u64)];
     let push = [record, records.len() as u32];
