@@ -234,21 +234,28 @@ fn bounds_of(part: &[u32], boxes: &[Bounds]) -> Bounds {
 /// and of the box around all, each in the same multiple.
 pub(super) fn octant_slots(centres: &[DVec3], middle: DVec3) -> [usize; 8] {
     debug_assert!(centres.len() <= 8, "{} children", centres.len());
-    let mut wishes = [(f64::NEG_INFINITY, usize::MAX, usize::MAX); 64];
-    for (child, &centre) in centres.iter().enumerate() {
+    let mut wishes = [[0.0; 8]; 8];
+    for (wishes, &centre) in wishes.iter_mut().zip(centres) {
         let v = centre - middle;
-        for slot in 0..8 {
+        for (slot, wish) in wishes.iter_mut().enumerate() {
             let sign = |bit: usize| if slot & bit != 0 { 1.0 } else { -1.0 };
-            wishes[child * 8 + slot] = (sign(4) * v.x + sign(2) * v.y + sign(1) * v.z, child, slot);
+            *wish = sign(4) * v.x + sign(2) * v.y + sign(1) * v.z;
         }
     }
-    let wishes = &mut wishes[..centres.len() * 8];
-    wishes.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut slots = [usize::MAX; 8];
-    for &mut (_, child, slot) in wishes {
-        if slots[child] == usize::MAX && !slots.contains(&slot) {
-            slots[child] = slot;
+    let mut taken = [false; 8];
+    for _ in centres {
+        let mut best = (f64::NEG_INFINITY, 0, 0);
+        for child in (0..centres.len()).filter(|&child| slots[child] == usize::MAX) {
+            for slot in (0..8).filter(|&slot| !taken[slot]) {
+                if wishes[child][slot] > best.0 {
+                    best = (wishes[child][slot], child, slot);
+                }
+            }
         }
+        let (_, child, slot) = best;
+        slots[child] = slot;
+        taken[slot] = true;
     }
     slots
 }

@@ -2,7 +2,9 @@
 
 use super::hierarchy::diagonal;
 use crate::bake::SceneData;
-use crate::layout::{Batch, Hit, INVALID, LIGHT_DIRECTIONAL, Light, Ray, SceneView, T_INFINITE};
+use crate::layout::{
+    Batch, Hit, INVALID, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT, Light, Ray, SceneView, T_INFINITE,
+};
 use crate::shading::frame::{frame_from_normal, to_world};
 use crate::shading::math::{dot3, length3, normalize3};
 use crate::shading::sampling::sample_2d;
@@ -125,15 +127,17 @@ enum Target {
     Direction(Vec3),
 }
 
-/// The first light that casts shadows; without one, a point above the camera by a tenth of the scene's diagonal.
+/// The first light at a point or at infinity that casts shadows; without one, a point above the camera by a tenth of the
+/// scene's diagonal.
 fn shadow_target(data: &SceneData, diagonal: f64) -> Target {
     let of = |light: &Light| match light.kind {
-        LIGHT_DIRECTIONAL => Target::Direction(-light.direction),
-        _ => Target::Point(light.position),
+        LIGHT_POINT | LIGHT_SPOT => Some(Target::Point(light.position)),
+        LIGHT_DIRECTIONAL => Some(Target::Direction(-light.direction)),
+        _ => None,
     };
     let camera = &data.header.camera;
     let above = || Target::Point(camera.eye + normalize3(camera.up) * (diagonal * 0.1) as f32);
-    data.lights.iter().find(|light| light.casts_shadow != 0).map_or_else(above, of)
+    data.lights.iter().filter(|light| light.casts_shadow != 0).find_map(of).unwrap_or_else(above)
 }
 
 fn shadow_ray(surface: &Surface, target: Target) -> Ray {
