@@ -142,7 +142,7 @@ fn settings_out_of_range_are_refused() {
         ("[film]\nfilter = { radius = 1 }", "a.toml:6:10: a filter needs the key \"type\""),
         (
             "[film]\nfilter = \"sinc\"",
-            "a.toml:6:10: \"filter\" must be \"box\", \"tent\", \"gaussian\", \"mitchell\" or a table, found the string \"sinc\"",
+            "a.toml:6:10: \"filter\" must be \"box\", \"tent\", \"gaussian\", \"mitchell\", \"catmull-rom\", \"blackman-harris\", \"lanczos\" or a table, found the string \"sinc\"",
         ),
         (
             "[film]\nfilter = { type = \"tent\", radius = 0 }",
@@ -310,11 +310,15 @@ fn shapes_that_have_no_surface_are_refused() {
     let cases: &[(&str, &str)] = &[
         (
             "shape = \"cube\"",
-            "a.toml:4:9: \"shape\" must be \"sphere\", \"quad\", \"box\", \"disk\", \"cylinder\", \"cone\", \"torus\", \"lathe\", \"teapot\", \"heightfield\" or \"mesh\", found \"cube\"",
+            "a.toml:4:9: \"shape\" must be \"sphere\", \"quad\", \"box\", \"disk\", \"cylinder\", \"cone\", \"torus\", \"lathe\", \"teapot\", \"heightfield\", \"terrain\", \"hairball\", \"sphereflake\", \"teapots\" or \"mesh\", found \"cube\"",
         ),
         (
             "shape = \"quad\"\nsize = [1, 2, 3]",
             "a.toml:5:8: \"size\" of this shape must be a number > 0 or 2 of them, found an array of 3",
+        ),
+        (
+            "shape = \"sphere\"\nshading = \"gouraud\"",
+            "a.toml:5:11: a sphere without \"segments\" has no triangles to shade flat or by Gouraud's method",
         ),
         (
             "shape = \"torus\"\nminor_radius = 2",
@@ -330,6 +334,11 @@ fn shapes_that_have_no_surface_are_refused() {
             "shape = \"teapot\"\nsegments = 500",
             "a.toml:5:12: \"segments\" of this shape must be an integer from 1 to 128, found 500",
         ),
+        (
+            "shape = \"terrain\"\ntriangles = 1",
+            "a.toml:5:13: \"triangles\" of this shape must be an integer from 2 to 33554432, found 1",
+        ),
+        ("shape = \"sphereflake\"\nlevel = 8", "a.toml:5:9: \"level\" must be an integer from 0 to 7, found 8"),
         ("shape = \"mesh\"", "a.toml:3:1: [[object]] needs the key \"file\""),
         (
             "shape = \"mesh\"\nfile = \"a.toml\"",

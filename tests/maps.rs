@@ -6,9 +6,9 @@ use common::*;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use gonio::bake::{BakeError, SceneData, bake};
 use gonio::layout::{
-    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, INVALID, Material as Record, PARAMETER_MASK, PARAMETER_METALLIC,
-    PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U, PARAMETER_ROUGHNESS_V, PARAMETER_WEIGHT, Ray,
-    T_INFINITE,
+    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, INVALID, Material as Record, PARAMETER_MASK,
+    PARAMETER_METALLIC, PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U, PARAMETER_ROUGHNESS_V,
+    PARAMETER_WEIGHT, Ray, T_INFINITE,
 };
 use gonio::scene::*;
 use gonio::shading::footprint::{Footprint, UvGradients, cone_footprint, mapped_normal, raised_normal};
@@ -41,7 +41,8 @@ fn textured(mesh: Option<Mesh>, transform: Transform, texture: Texture, paramete
     scene.objects = vec![object(geometry, transform)];
     scene.textures = vec![texture];
     scene.materials[0].color = Vec3::ONE;
-    scene.materials[0].textures = vec![TextureBinding { parameter, texture: TextureId(0), channel: Channel::Rgb, scale }];
+    scene.materials[0].textures =
+        vec![TextureBinding { parameter, texture: TextureId(0), channel: Channel::Rgb, scale }];
     bake(&scene).expect("bakes")
 }
 
@@ -207,7 +208,13 @@ fn the_tangents_of_a_sphere_are_the_derivatives_of_its_points() {
 fn gradients_tell_how_coordinates_change_over_a_step() {
     let mut random = Random::new(5);
     for transform in placements() {
-        let data = textured(Some(square(|c| Vec2::new(3.0 * c.x + c.y, c.y))), transform, constant([1.0; 4]), Parameter::Color, 1.0);
+        let data = textured(
+            Some(square(|c| Vec2::new(3.0 * c.x + c.y, c.y))),
+            transform,
+            constant([1.0; 4]),
+            Parameter::Color,
+            1.0,
+        );
         let view = data.view();
         let place = |p: Vec3| transform.0.transform_point3(p.as_dvec3()).as_vec3();
         for _ in 0..50 {
@@ -375,7 +382,9 @@ fn a_zone_plate_has_the_frequency_of_its_radius() {
     assert_eq!(zone_plate(Vec2::ZERO), 1.0);
     // Phase r^2 / 2: from r = 10 to the next crest it is 1 / 10 of a unit, less half its square.
     let next = 102.0f32.sqrt();
-    assert!((zone_plate(Vec2::new(10.0, 0.0)) - 1.0).abs() < 1e-5 && (zone_plate(Vec2::new(0.0, next)) - 1.0).abs() < 1e-4);
+    assert!(
+        (zone_plate(Vec2::new(10.0, 0.0)) - 1.0).abs() < 1e-5 && (zone_plate(Vec2::new(0.0, next)) - 1.0).abs() < 1e-4
+    );
 }
 
 #[test]
@@ -423,8 +432,7 @@ fn each_parameter_takes_its_texture() {
 #[test]
 fn channels_are_told_apart() {
     let texel = Vec4::new(0.1, 0.2, 0.3, 0.4);
-    for (channel, want) in
-        [(CHANNEL_R, 0.1), (CHANNEL_G, 0.2), (CHANNEL_B, 0.3), (CHANNEL_A, 0.4), (CHANNEL_RGB, 0.2)]
+    for (channel, want) in [(CHANNEL_R, 0.1), (CHANNEL_G, 0.2), (CHANNEL_B, 0.3), (CHANNEL_A, 0.4), (CHANNEL_RGB, 0.2)]
     {
         assert_eq!(gonio::shading::parameter::channel_value(texel, channel).y, want);
     }

@@ -161,6 +161,11 @@ vec3 emission_material(Material material) {
     return material.emission + shown;
 }
 
+// How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
+float own_weight(Material material) {
+    return (material.flags & MATERIAL_FILTERED) != 0u ? 1.0 : 1.0 - material.k_t;
+}
+
 // Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) where there is an interface.
 Spectrum albedo_material(Material material) {
     vec3 diffuse = material.color * material.k_d;

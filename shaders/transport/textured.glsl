@@ -17,7 +17,7 @@
 // `surface.normal`. One loop with one place that fetches, as each place is inlined and costs compile time.
 Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface surface) {
     Material material = bare;
-    if (material.texture_count == 0u) {
+    if (!SCENE_HAS_TEXTURES || material.texture_count == 0u) {
         return material;
     }
     UvGradients gradients = gradients_at(surface, hit);
@@ -65,6 +65,10 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
 // `key`: of the path, which meets one surface at most.
 Material material_at(vec3 direction, Hit hit, SampleKey key, inout Surface surface) {
     Material material = load_material(surface.material);
+    if (!HAS_MODEL(MODEL_BLEND)) {
+        material.color *= surface.color;
+        return apply_textures(material, direction, hit, surface);
+    }
     float u = 0.0;
     if (material.model == MODEL_BLEND) {
         u = sample_1d(key, DIMENSION_LEAF);

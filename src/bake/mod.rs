@@ -19,8 +19,9 @@ mod model;
 mod scene;
 pub mod srgb;
 mod texture;
+mod wide;
 
-pub use data::{HeapPiece, SceneData};
+pub use data::{BakeTimes, HeapPiece, SceneData};
 pub use scene::bake;
 
 /// Why a scene cannot be baked: exit code 65.
@@ -46,6 +47,11 @@ pub enum BakeError {
     /// A blend of blends of blends.
     #[error("material \"{name}\" blends more than 8 materials, or itself")]
     Blend { name: String },
+    /// Flat or Gouraud shading of what has no triangles.
+    #[error(
+        "object \"{name}\" is an analytic sphere: it has no triangles to shade flat or by Gouraud's method; a sphere of a TOML scene gets them from \"segments\""
+    )]
+    Faceted { name: String },
     /// The eye is its own target, or the like.
     #[error("the camera {0}")]
     Camera(&'static str),

@@ -16,7 +16,8 @@ const BLEND_LEAVES: usize = MAX_LEAVES as usize;
 /// Blends within blends, at most.
 const BLEND_DEPTH: usize = 8;
 
-/// One material; its table is appended to `tables`. `traced`: for path tracing, which wants reciprocal models. A blend's materials are found by `bake_blends` later.
+/// One material; its table is appended to `tables`. A blend's materials are found by `bake_blends` later.
+/// `traced`: for path tracing, which wants reciprocal models.
 pub fn bake_material(
     material: &scene::Material,
     measured: &[Table],

@@ -6,10 +6,10 @@
 //! `sample_material` only: their eval and pdf are zero, and `local` and `whitted` draw them as branches.
 
 use crate::layout::{
-    MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC,
-    MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR, MODEL_NULL, MODEL_OREN_NAYAR,
-    MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC, MODEL_ROUGH_PLASTIC,
-    MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneView,
+    MATERIAL_FILTERED, MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE,
+    MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR, MODEL_NULL,
+    MODEL_OREN_NAYAR, MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC,
+    MODEL_ROUGH_PLASTIC, MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneView,
 };
 use crate::shading::ashikhmin::{eval_ashikhmin, pdf_ashikhmin, sample_ashikhmin};
 use crate::shading::blinn_phong::{eval_blinn_phong, pdf_blinn_phong, sample_blinn_phong};
@@ -165,6 +165,12 @@ pub fn mirror_weight(material: &Material, cos_o: f32) -> Spectrum {
 pub fn emission_material(material: &Material) -> Vec3 {
     let shown = if material.model == MODEL_EMISSIVE { material.color } else { Vec3::ZERO };
     material.emission + shown
+}
+
+/// How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
+#[inline]
+pub fn own_weight(material: &Material) -> f32 {
+    if (material.flags & MATERIAL_FILTERED) != 0 { 1.0 } else { 1.0 - material.k_t }
 }
 
 /// Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) where there is an interface.

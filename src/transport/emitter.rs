@@ -5,13 +5,12 @@ use super::area_light::{
 };
 use super::textured::material_at;
 use crate::layout::{
-    EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_SPHERE, EMITTER_TEXTURED, Emitter, Hit, KIND_SPHERE,
-    Ray, SceneView, T_INFINITE, load_instance, load_light, load_material,
-    load_table,
+    EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_SPHERE, EMITTER_TEXTURED, Emitter, Hit, KIND_SPHERE, Ray, SceneView,
+    T_INFINITE, load_instance, load_light, load_material, load_table,
 };
 use crate::shading::environment::sample_environment;
 use crate::shading::light::{LightSample, no_light, sample_light};
-use crate::shading::material::emission_material;
+use crate::shading::material::{emission_material, own_weight};
 use crate::shading::math::{dot3, rcp};
 use crate::shading::sampling::SampleKey;
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_luminance};
@@ -51,7 +50,8 @@ fn textured_radiance(
         ..Hit::default()
     };
     let mut surface = surface_at(scene, &ray, &hit);
-    spectrum_from_rgb(emission_material(&material_at(scene, lit.wi, &hit, key, &mut surface)))
+    let material = material_at(scene, lit.wi, &hit, key, &mut surface);
+    spectrum_from_rgb(emission_material(&material) * own_weight(&material))
 }
 
 /// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1. `key`: of the
@@ -91,8 +91,9 @@ pub fn casts_shadow(scene: &SceneView, emitter: &Emitter) -> bool {
 pub fn pdf_emitter(scene: &SceneView, origin: Vec3, direction: Vec3, t: f32, surface: &Surface) -> f32 {
     let instance = load_instance(scene, surface.instance);
     // Without textures: what bake made the choice by.
-    let luminance = spectrum_luminance(spectrum_from_rgb(emission_material(&load_material(scene, surface.material))));
-    let density = instance.light_density * luminance;
+    let material = load_material(scene, surface.material);
+    let shown = spectrum_from_rgb(emission_material(&material) * own_weight(&material));
+    let density = instance.light_density * spectrum_luminance(shown);
     if surface.kind == KIND_SPHERE {
         let along = transform_vector(instance.to_object, direction);
         let start = transform_point(instance.to_object, origin);

@@ -1,7 +1,7 @@
 //! `[[material]]`.
 
 use super::document::Value;
-use super::format::{LOBE, MATERIAL};
+use super::material_format::{LOBE, MATERIAL};
 use super::keys::Range;
 use super::metal::{METALS, normal_reflectance};
 use super::names::Names;
@@ -93,6 +93,7 @@ fn read_material(
         casts_shadow: table.boolean("casts_shadow")?,
         opacity: table.float("opacity")?.unwrap_or(1.0),
         two_sided: table.boolean("two_sided")?.unwrap_or(true),
+        emission_two_sided: table.boolean("emission_two_sided")?.unwrap_or(true),
         model,
         ..Material::grey(name)
     })
