@@ -3,6 +3,7 @@
 pub mod compare;
 pub mod devices;
 mod exact;
+mod gallery;
 mod interrupt;
 pub mod merge;
 mod output;
