@@ -65,7 +65,7 @@ enum What {
         #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "0,30,60", value_parser = angle)]
         theta: Vec<f64>,
         /// Roughness of Smith's surface.
-        #[arg(long, value_name = "M", default_value = "0.4", value_parser = roughness)]
+        #[arg(long, value_name = "M", default_value = "0.6", value_parser = roughness)]
         m: f32,
     },
     /// Fresnel reflectance against the angle; one metal alone by channel, with Schlick's approximation.
@@ -159,7 +159,7 @@ fn facets(text: &str) -> Result<Facets, String> {
 
 fn index(text: &str) -> Result<Interface, String> {
     let eta = number_in(text, 0.1, 10.0, "an index of refraction")? as f32;
-    Ok(Interface { name: format!("η = {eta}"), kind: InterfaceKind::Dielectric { eta } })
+    Ok(Interface::dielectric(eta))
 }
 
 fn metal(name: &str) -> Result<Interface, String> {
@@ -306,19 +306,19 @@ impl ShelfArgs {
 fn phong_and_cook_torrance() -> Vec<Material> {
     let white = Material { color: Rgb::splat(0.3), k_d: 0.5, k_s: 0.5, ..Material::grey("") };
     let facets = Model::CookTorrance {
-        lobes: vec![Lobe::beckmann(0.2, 1.0)],
-        fresnel: Fresnel::Dielectric { eta: 1.5 },
+        lobes: vec![Lobe::beckmann(0.3, 1.0)],
+        fresnel: Fresnel::Schlick { f0: Rgb::ONE },
         masking: Masking::VCavity,
         normalisation_1982: false,
     };
     vec![
         Material { name: "lambert".into(), model: Model::Lambert, k_d: 1.0, k_s: 0.0, ..white.clone() },
         Material {
-            name: "phong, n = 32".into(),
-            model: Model::Phong { exponent: 32.0, lafortune: Some(true) },
+            name: "phong, n = 16".into(),
+            model: Model::Phong { exponent: 16.0, lafortune: Some(true) },
             ..white.clone()
         },
-        Material { name: "cook-torrance, m = .2".into(), model: facets, ..white },
+        Material { name: "cook-torrance, m = .3".into(), model: facets, ..white },
     ]
 }
 

@@ -1,5 +1,6 @@
 //! `gonio render`: a picture of a scene.
 
+use super::gallery;
 use super::interrupt::Interrupt;
 use super::output::OutputFlags;
 use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, crop_of, film_of};
@@ -24,11 +25,12 @@ Examples:
   gonio render scenes/first-light.toml -o first-light.png
   gonio render bunny.obj --size 1920x1080 --spp 64 -o bunny.png
   gonio render scene.toml --samples 0..32 -o a.gfilm     half of the samples, to merge with another machine's
+  gonio render --gallery scenes/lecture -o gallery       a page of all scenes of a folder
   gonio render scene.toml --time 60 -o best.exr          whatever a minute gives
   gonio render scene.toml --pixel 320,200                every bounce of one sample
   cat scene.toml | gonio render - -o - | display         from standard input to standard output")]
 pub struct RenderArgs {
-    /// .toml, .obj, .ply, .gltf, .glb, .xml (Mitsuba); `-` is TOML on standard input.
+    /// .toml, .obj, .ply, .gltf, .glb, .xml (Mitsuba); `-` is TOML on standard input; with --gallery a folder of .toml files.
     scene: PathBuf,
     /// .png, .exr, .hdr, or .gfilm for the film itself; `-` is PNG on standard output. Default: the scene's name, .png.
     #[arg(short, long, value_name = "FILE")]
@@ -54,6 +56,10 @@ pub struct RenderArgs {
     /// Write what was done, and how fast, as JSON.
     #[arg(long, value_name = "FILE")]
     stats: Option<PathBuf>,
+    /// Render every scene of a folder into the folder --output, with a page (index.html) that shows formulas,
+    /// pictures, plots and scene files.
+    #[arg(long, requires = "output", conflicts_with_all = ["samples", "crop", "pixel", "time", "aov", "transparent", "stats"])]
+    gallery: bool,
     /// No progress bar.
     #[arg(long)]
     no_progress: bool,
@@ -95,6 +101,9 @@ struct Outcome {
 }
 
 pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
+    if let (true, Some(folder)) = (args.gallery, &args.output) {
+        return gallery::run(&args.scene, folder, &args.scene_flags, &args.backend);
+    }
     let scene = args.scene_flags.load(&args.scene)?;
     let crop = crop_of(&scene, args.crop)?;
     if let Some(pixel) = args.pixel {

@@ -134,7 +134,7 @@ impl<DB: DrawingBackend> Canvas<DB> {
 /// Width of `text` in pixels.
 pub fn text_width(text: &str, size: f64) -> f64 {
     // Half of an em on average; what is estimated too wide only leaves space.
-    text.chars().count() as f64 * size * 0.52
+    text.chars().count() as f64 * size * 0.47
 }
 
 /// `points` cut into dashes.

@@ -114,6 +114,10 @@ pub enum InterfaceKind {
 }
 
 impl Interface {
+    pub fn dielectric(eta: f32) -> Self {
+        Self { name: format!("η = {eta}"), kind: InterfaceKind::Dielectric { eta } }
+    }
+
     /// Reflectance at `degrees`, linear Rec. 709.
     pub fn reflectance(&self, degrees: f64) -> Vec3 {
         match self.kind {
@@ -186,7 +190,7 @@ pub fn spot_figure(exponents: &[f32], delta: f64) -> Figure {
     };
     let curves = exponents.iter().enumerate().map(curve).collect();
     let frame = Frame::Polar { side: Side::Lower, unit: "I_p / I_L'".into(), max: 1.0, arrows: Vec::new() };
-    let note = format!("I_p = I_L' cosᵖ γ, zero beyond the cone δ = {delta}°");
+    let note = format!("I_p = I_L' (cos γ)^p, zero beyond the cone δ = {delta}°");
     Figure { title: "Directed light".into(), note, frame, curves }
 }
 

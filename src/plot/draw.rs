@@ -8,9 +8,9 @@ const INK: Color = [30, 30, 30];
 const GREY: Color = [110, 110, 110];
 const GRID: Color = [222, 222, 222];
 /// Of titles, of names and numbers, of notes; pixels.
-const TITLE: f64 = 21.0;
-const TEXT: f64 = 16.0;
-const NOTE: f64 = 14.5;
+const TITLE: f64 = 25.0;
+const TEXT: f64 = 19.0;
+const NOTE: f64 = 17.0;
 /// Of a curve, pixels.
 const CURVE: f64 = 2.2;
 
@@ -165,6 +165,12 @@ fn polar<DB: DrawingBackend>(
         _ => (room.width() / 2.0).min(room.height() - 56.0),
     };
     let [middle, _] = room.centre();
+    // In the middle of what is left below.
+    let spare = match side {
+        Side::Full => room.height() - 60.0 - 2.0 * radius,
+        _ => room.height() - 56.0 - radius,
+    };
+    let room = Panel { top: room.top + (spare / 2.0).max(0.0), ..room };
     let [centre, up] = match side {
         Side::Upper => [[middle, room.top + radius], [0.0, -1.0]],
         Side::Lower => [[middle, room.top], [0.0, 1.0]],

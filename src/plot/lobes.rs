@@ -111,7 +111,7 @@ fn project(p: DVec3) -> [f64; 3] {
     let (x, y) = (p.x * libm::cos(turn) - p.y * libm::sin(turn), p.x * libm::sin(turn) + p.y * libm::cos(turn));
     // y leads away from the viewer.
     let (up, near) = (p.z * libm::cos(tilt) + y * libm::sin(tilt), p.z * libm::sin(tilt) - y * libm::cos(tilt));
-    [0.5 + 0.46 * x, 0.34 + 0.46 * up, near]
+    [0.5 + 0.46 * x, 0.4 + 0.46 * up, near]
 }
 
 /// The facets of one body, farthest first, and its largest value.
@@ -126,7 +126,8 @@ fn solid(shelf: &Shelf, index: usize, theta: f64, color: Color) -> (Vec<Facet>, 
     let grid: Vec<Vec<DVec3>> =
         (0..=ROWS).map(|row| (0..=COLUMNS).map(|column| way(row, column)).map(|w| w * value(w)).collect()).collect();
     let largest = grid.iter().flatten().map(|p| p.length()).fold(0.0, f64::max);
-    let scale = if largest > 0.0 { 1.0 / largest } else { 0.0 };
+    // Within the disc, so that the light is seen to come in.
+    let scale = if largest > 0.0 { 0.8 / largest } else { 0.0 };
     let mut facets = vec![(f64::MIN, disc())];
     facets.extend(arrow(theta));
     for row in 0..ROWS {
@@ -135,7 +136,8 @@ fn solid(shelf: &Shelf, index: usize, theta: f64, color: Color) -> (Vec<Facet>, 
                 .map(|[i, j]| grid[i][j] * scale);
             let normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]).normalize_or_zero();
             // Lit from the viewer's upper left.
-            let light = 0.55 + 0.45 * normal.dot(DVec3::new(-0.5, -0.6, 0.62)).abs();
+            let outward = if normal.dot(corners[2] + corners[0]) < 0.0 { -normal } else { normal };
+            let light = 0.68 + 0.32 * outward.dot(DVec3::new(-0.5, -0.6, 0.62));
             let places = corners.map(project);
             let depth = places.iter().map(|p| p[2]).sum::<f64>();
             let facet = Facet {
@@ -162,7 +164,7 @@ fn arrow(theta: f64) -> Vec<(f64, Facet)> {
     let way = direction(-theta).as_dvec3();
     let wide = DVec3::new(way.z, 0.0, -way.x) * 0.008;
     let piece = |i: usize| {
-        let [near, far] = [i, i + 1].map(|i| 0.12 + 0.98 * i as f64 / PIECES as f64);
+        let [near, far] = [i, i + 1].map(|i| 0.12 + 1.13 * i as f64 / PIECES as f64);
         // A head at its end.
         let half = |t: f64| if t < 0.2 { wide * (0.5 + 4.0 * (t - 0.12) / 0.08) } else { wide };
         let corners = [way * near + half(near), way * far + half(far), way * far - half(far), way * near - half(near)];

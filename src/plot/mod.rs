@@ -7,7 +7,10 @@ pub mod curves;
 mod draw;
 pub mod edge;
 pub mod figure;
+pub mod lecture;
 pub mod lobes;
+pub mod page;
+pub mod panels;
 pub mod shelf;
 
 pub use canvas::PlotError;
