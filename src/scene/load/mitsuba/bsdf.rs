@@ -155,6 +155,8 @@ impl Loader<'_> {
                 return Ok(inner);
             }
         }
+        // What lets light through has no back that could be black.
+        material.two_sided |= transmits(&material.model);
         Ok(material)
     }
 
@@ -263,6 +265,14 @@ impl Loader<'_> {
             }
         }
         Ok(())
+    }
+}
+
+fn transmits(model: &Model) -> bool {
+    match model {
+        Model::Dielectric { .. } | Model::RoughDielectric { .. } | Model::ThinDielectric { .. } | Model::Null => true,
+        Model::Principled(principled) => principled.spec_trans > 0.0,
+        _ => false,
     }
 }
 
