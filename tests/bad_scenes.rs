@@ -117,8 +117,8 @@ fn settings_out_of_range_are_refused() {
     let cases: &[(&str, &str)] = &[
         ("[render]\nsamples = 0", "a.toml:6:11: \"samples\" must be an integer from 1 to 16777216, found 0"),
         (
-            "[render]\nintegrator = \"path\"",
-            "a.toml:6:14: \"integrator\" must be \"local\" or \"whitted\", found \"path\"",
+            "[render]\nintegrator = \"bdpt\"",
+            "a.toml:6:14: \"integrator\" must be \"local\", \"whitted\", \"direct\" or \"path\", found \"bdpt\"",
         ),
         (
             "[render]\nsampler = \"sobel\"",
@@ -344,7 +344,7 @@ fn shapes_that_have_no_surface_are_refused() {
             "shape = \"mesh\"\nfile = \"a.toml\"",
             "a.toml:5:8: \"file\" of a mesh must be OBJ, PLY, glTF or GLB, found a TOML scene",
         ),
-        ("shape = \"mesh\"\nfile = \"a.stl\"", "a.stl: scene files are .toml, .obj, .gltf, .glb or .ply, found .stl"),
+        ("shape = \"mesh\"\nfile = \"a.stl\"", "a.stl: scene files are .toml, .obj, .gltf, .glb, .ply or .xml, found .stl"),
     ];
     for (text, expected) in cases {
         refuses("a.toml", &format!("[camera]\neye = [0, 0, 5]\n[[object]]\n{text}\n"), expected);
@@ -369,8 +369,8 @@ fn missing_files_are_io_errors_that_say_who_asked() {
         let error = load(Path::new(name), &[]).expect_err("no such file");
         assert!(matches!(error, SceneError::Io { .. }) && error.to_string().starts_with(name), "{error}");
     }
-    refuses("a.txt", "", "a.txt: scene files are .toml, .obj, .gltf, .glb or .ply, found .txt");
-    refuses("a", "", "a: scene files are .toml, .obj, .gltf, .glb or .ply, found no extension");
+    refuses("a.txt", "", "a.txt: scene files are .toml, .obj, .gltf, .glb, .ply or .xml, found .txt");
+    refuses("a", "", "a: scene files are .toml, .obj, .gltf, .glb, .ply or .xml, found no extension");
 }
 
 #[test]
