@@ -65,10 +65,10 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
 // `key`: of the path, which meets one surface at most.
 Material material_at(vec3 direction, Hit hit, SampleKey key, inout Surface surface) {
     Material material = load_material(surface.material);
-    if (!HAS_MODEL(MODEL_BLEND)) {
-        material.color *= surface.color;
-        return apply_textures(material, direction, hit, surface);
-    }
+#ifdef CLASSIC_MODELS
+    material.color *= surface.color;
+    return apply_textures(material, direction, hit, surface);
+#else
     float u = 0.0;
     if (material.model == MODEL_BLEND) {
         u = sample_1d(key, DIMENSION_LEAF);
@@ -88,6 +88,7 @@ Material material_at(vec3 direction, Hit hit, SampleKey key, inout Surface surfa
         material = load_material(surface.material);
     }
     return material;
+#endif
 }
 
 #endif

@@ -143,6 +143,7 @@ impl Inner {
             .name(c"main")
             .specialization_info(&specialization);
         let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(self.layout);
+        let start = std::time::Instant::now();
         // SAFETY: module, layout and cache are of this device; the module is not needed afterwards.
         let pipelines = unsafe {
             let pipelines = raw.create_compute_pipelines(self.device.pipeline_cache(), &[info], None);
@@ -150,6 +151,7 @@ impl Inner {
             pipelines
         };
         self.pipeline = pipelines.map_err(|(_, error)| failed()(error))?[0];
+        log::debug!("kernel {}: pipeline made in {:.3} s", self.name, start.elapsed().as_secs_f64());
         Ok(())
     }
 }
