@@ -200,15 +200,13 @@ fn the_heap_has_every_array_where_the_header_says() {
     let mut scene = scene_of(vec![globe(4)]);
     scene.film.filter = Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 };
     scene.textures.push(Texture {
-        name: "t".into(),
-        width: 3,
-        height: 1,
-        data: TextureData::Srgb8(std::sync::Arc::new(vec![[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12]])),
-        wrap_u: Wrap::Repeat,
         wrap_v: Wrap::Clamp,
-        bilinear: true,
-        scale: [1.0; 2],
-        offset: [0.0; 2],
+        ..Texture::new(
+            "t",
+            3,
+            1,
+            TextureData::Srgb8(std::sync::Arc::new(vec![[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12]])),
+        )
     });
     let data = bake(&scene).expect("bakes");
     let h = &data.header;

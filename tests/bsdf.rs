@@ -9,9 +9,7 @@ use baked::Baked;
 use chi_square::{Random, direction, integrate_cell, sidak, test_sphere_sampler};
 use glam::{Vec2, Vec3};
 use gonio::layout::MATERIAL_TRANSMISSIVE;
-use gonio::scene::{
-    Distribution, Fresnel, Lobe, Masking, Material, Model, Principled, Rgb, WardNormalisation,
-};
+use gonio::scene::{Distribution, Fresnel, Lobe, Masking, Material, Model, Principled, Rgb, WardNormalisation};
 use gonio::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
 use gonio::shading::material::{eval_material, is_delta, pdf_material, sample_material};
 use std::f64::consts::{PI, TAU};
@@ -131,8 +129,7 @@ fn every_sampler_follows_its_density_over_the_sphere() {
             let (result, integral) = test_sphere_sampler(
                 samples,
                 || {
-                    let sample =
-                        sample_material(&baked.view(), &baked.material(), wo, random.unit2(), random.unit());
+                    let sample = sample_material(&baked.view(), &baked.material(), wo, random.unit2(), random.unit());
                     delta += u32::from(sample.flags & SAMPLE_DELTA != 0);
                     (sample.pdf > 0.0 && sample.flags & SAMPLE_DELTA == 0).then_some(sample.wi)
                 },

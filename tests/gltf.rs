@@ -2,7 +2,9 @@
 
 use glam::{DVec3, Vec2, Vec3};
 use gonio::scene::load::{gltf, load};
-use gonio::scene::{Geometry, Model, Scene, SceneError, TextureData, Transparency, Wrap};
+use gonio::scene::{
+    Channel, Geometry, Model, Parameter, Scene, SceneError, TextureBinding, TextureData, Transparency, Wrap,
+};
 use std::path::{Path, PathBuf};
 
 /// A file or folder of the assets; None, with a line saying so, where they are not installed.
@@ -42,6 +44,7 @@ fn check_scene(scene: &Scene) {
         let texels = match &texture.data {
             TextureData::Srgb8(t) | TextureData::Linear8(t) => t.len(),
             TextureData::Float(t) => t.len(),
+            TextureData::Pattern(_) => panic!("a file holds no pattern"),
         };
         assert_eq!(texels as u64, u64::from(texture.width) * u64::from(texture.height));
     }
@@ -202,14 +205,15 @@ fn gltf_material_becomes_our_nearest_model() {
         scene.expect("valid").materials[0].clone()
     };
     let metal = with(r#"{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "roughnessFactor": 0.5}}"#);
-    let Model::CookTorrance { lobes, fresnel, .. } = &metal.model else { panic!("{metal:?}") };
-    assert_eq!(lobes[0].alpha_u, 0.25);
-    assert!(matches!(fresnel, gonio::scene::Fresnel::Conductor { .. }));
-    assert_eq!(metal.specular_color, Vec3::new(1.0, 0.5, 0.25));
+    let Model::Principled(principled) = &metal.model else { panic!("{metal:?}") };
+    assert_eq!((principled.roughness, principled.metallic), (0.5, 1.0));
+    assert_eq!((metal.color, metal.specular_color), (Vec3::new(1.0, 0.5, 0.25), Vec3::new(1.0, 0.5, 0.25)));
+    assert_eq!(metal.k_r, 0.25);
     let mirror = with(r#"{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "roughnessFactor": 0}}"#);
     assert_eq!((&mirror.model, mirror.color), (&Model::Mirror, Vec3::new(1.0, 0.5, 0.25)));
     let plastic = with(r#"{"pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.3, 0.4, 1], "metallicFactor": 0}}"#);
-    assert!((plastic.color * plastic.k_d - Vec3::new(0.2, 0.3, 0.4)).length() < 1e-6, "the diffuse albedo is kept");
+    let Model::Principled(principled) = &plastic.model else { panic!("{plastic:?}") };
+    assert_eq!((principled.metallic, principled.eta, plastic.color), (0.0, 1.5, Vec3::new(0.2, 0.3, 0.4)));
     let glass = with(
         r#"{"pbrMetallicRoughness": {"metallicFactor": 0}, "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1},
         "KHR_materials_ior": {"ior": 1.33}, "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [1, 0.5, 0.25]}}}"#,
@@ -273,13 +277,104 @@ fn glb_chunks_are_read_and_unknown_ones_skipped() {
     assert_eq!(scene.meshes[0].positions[1], Vec3::X);
 }
 
-#[test]
-fn gltf_texture_transform_is_baked_into_uvs_and_the_sampler_kept() {
+/// A picture of 2 x 3 texels of one colour.
+fn png_base64(color: [u8; 4]) -> String {
     use base64::Engine;
     let mut png = std::io::Cursor::new(Vec::new());
-    let picture = image::ImageBuffer::from_pixel(2, 3, image::Rgba([255u8, 0, 0, 255]));
+    let picture = image::ImageBuffer::from_pixel(2, 3, image::Rgba(color));
     image::DynamicImage::ImageRgba8(picture).write_to(&mut png, image::ImageFormat::Png).expect("a picture");
-    let uri = base64::engine::general_purpose::STANDARD.encode(png.get_ref());
+    base64::engine::general_purpose::STANDARD.encode(png.get_ref())
+}
+
+/// The triangle with one material, and pictures of one colour each.
+fn textured_gltf(material: &str, pictures: &[[u8; 4]]) -> Scene {
+    let images: Vec<String> =
+        pictures.iter().map(|c| format!(r#"{{"uri": "data:image/png;base64,{}"}}"#, png_base64(*c))).collect();
+    let textures: Vec<String> = (0..pictures.len()).map(|i| format!(r#"{{"source": {i}}}"#)).collect();
+    let head = format!(
+        r#""scene": 0, "images": [{}], "textures": [{}], "materials": [{material}],"#,
+        images.join(","),
+        textures.join(",")
+    );
+    let scene = triangle_gltf(|t| {
+        t.replace(r#""POSITION": 0"#, r#""POSITION": 0, "TEXCOORD_0": 2"#)
+            .replace(r#""indices": 1"#, r#""indices": 1, "material": 0"#)
+            .replace(r#""scene": 0,"#, &head)
+    });
+    scene.unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What a material's textures vary, with channel, scale and first texel.
+fn bindings(scene: &Scene) -> Vec<(Parameter, Channel, f32, [u8; 4], bool)> {
+    let of = |binding: &TextureBinding| {
+        let (texel, encoded) = match &scene.textures[binding.texture.0 as usize].data {
+            TextureData::Srgb8(texels) => (texels[0], true),
+            TextureData::Linear8(texels) => (texels[0], false),
+            _ => panic!("eight bits"),
+        };
+        (binding.parameter, binding.channel, binding.scale, texel, encoded)
+    };
+    scene.materials[0].textures.iter().map(of).collect()
+}
+
+#[test]
+fn gltf_textures_vary_every_parameter_texel_by_texel() {
+    let scene = textured_gltf(
+        r#"{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 1}, "metallicFactor": 0.75},
+        "normalTexture": {"index": 2, "scale": 0.5}, "emissiveTexture": {"index": 3}, "emissiveFactor": [1, 1, 1],
+        "occlusionTexture": {"index": 1}, "alphaMode": "MASK", "alphaCutoff": 0.25}"#,
+        &[[9, 8, 7, 128], [0, 100, 200, 255], [128, 128, 255, 255], [1, 2, 3, 255]],
+    );
+    assert_eq!(
+        bindings(&scene),
+        [
+            (Parameter::Color, Channel::Rgb, 1.0, [9, 8, 7, 128], true),
+            (Parameter::Roughness, Channel::G, 1.0, [0, 100, 200, 255], false),
+            (Parameter::Metallic, Channel::B, 1.0, [0, 100, 200, 255], false),
+            (Parameter::Mask, Channel::A, 0.25, [9, 8, 7, 128], true),
+            (Parameter::Emission, Channel::Rgb, 1.0, [1, 2, 3, 255], true),
+            (Parameter::Normal, Channel::Rgb, 0.5, [128, 128, 255, 255], false),
+        ]
+    );
+    let Model::Principled(principled) = &scene.materials[0].model else { panic!("{:?}", scene.materials[0]) };
+    assert_eq!((principled.roughness, principled.metallic), (1.0, 0.75), "what the texels are times");
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn gltf_alpha_of_a_texture_blends_only_where_there_is_some() {
+    let material = r#"{"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "baseColorFactor": [1, 1, 1, 0.5]}}"#;
+    let scene = textured_gltf(material, &[[9, 8, 7, 128]]);
+    assert_eq!(bindings(&scene)[1], (Parameter::Opacity, Channel::A, 1.0, [9, 8, 7, 128], true));
+    assert_eq!(scene.materials[0].opacity, 0.5);
+    let scene = textured_gltf(material, &[[9, 8, 7, 255]]);
+    assert_eq!(bindings(&scene).len(), 1);
+    assert_eq!(scene.materials[0].transparency, Some(Transparency::Interpolated { k_t: 0.5 }));
+    let masked = r#"{"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.4]}}"#;
+    assert_eq!(textured_gltf(masked, &[]).materials[0].opacity, 0.0);
+}
+
+#[test]
+fn gltf_specular_glossiness_is_converted_texel_by_texel() {
+    let with = |diffuse: [u8; 4], specular: [u8; 4]| {
+        let material = r#"{"extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseTexture": {"index": 0},
+            "specularGlossinessTexture": {"index": 1}, "glossinessFactor": 0.5}}}"#;
+        bindings(&textured_gltf(material, &[diffuse, specular]))
+    };
+    // A gold of sRGB 255, 226, 155 and full glossiness: the specular colour is the base colour, all metal.
+    let gold = with([0, 0, 0, 255], [255, 226, 155, 255]);
+    assert_eq!(gold[0], (Parameter::Color, Channel::Rgb, 1.0, [255, 226, 155, 255], true));
+    assert_eq!(gold[1].3, [0, 128, 255, 255], "roughness 1 - 0.5");
+    assert_eq!((gold[1].0, gold[2].0), (Parameter::Roughness, Parameter::Metallic));
+    // 4 % reflectance is sRGB 56: what is no metal keeps its diffuse colour.
+    let chalk = with([200, 100, 50, 255], [56, 56, 56, 0]);
+    let near = |a: [u8; 4], b: [u8; 4]| a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 2);
+    assert!(near(chalk[0].3, [200, 100, 50, 255]) && near(chalk[1].3, [0, 255, 0, 255]), "{chalk:?}");
+}
+
+#[test]
+fn gltf_texture_transform_and_sampler_become_the_textures() {
+    let uri = png_base64([255, 0, 0, 255]);
     let head = format!(
         r#""scene": 0, "images": [{{"uri": "data:image/png;base64,{uri}"}}],
         "samplers": [{{"magFilter": 9728, "wrapS": 33071, "wrapT": 33648}}], "textures": [{{"source": 0, "sampler": 0}}],
@@ -297,7 +392,10 @@ fn gltf_texture_transform_is_baked_into_uvs_and_the_sampler_kept() {
     assert_eq!((texture.wrap_u, texture.wrap_v), (Wrap::Clamp, Wrap::Mirror));
     // A quarter turn takes (2 u, v) to (v, -2 u); then the offset, then v up.
     let expected = [Vec2::new(1.25, 1.0), Vec2::new(-0.75, -1.0), Vec2::new(0.25, 1.0 + 128.0 / 127.0)];
+    let ([su, sv], [hu, hv], [ou, ov]) = (texture.scale, texture.shear, texture.offset);
     for (uv, expected) in scene.meshes[0].uvs.iter().zip(expected) {
-        assert!((*uv - expected).length() < 1e-5, "{uv} {expected}");
+        let laid = Vec2::new(uv.x * su + uv.y * hu + ou, uv.y * sv + uv.x * hv + ov);
+        assert!((laid - expected).length() < 1e-5, "{laid} {expected}");
     }
+    assert_eq!(scene.meshes[0].uvs[0].y, 0.0, "the set that the texture asks for, as it is but for v");
 }

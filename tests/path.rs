@@ -263,6 +263,8 @@ fn sky_texture(width: u32, height: u32, data: TextureData) -> Texture {
         bilinear: true,
         scale: [1.0; 2],
         offset: [0.0; 2],
+        mipmap: false,
+        shear: [0.0; 2],
     }
 }
 

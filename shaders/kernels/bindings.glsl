@@ -35,6 +35,9 @@ layout(constant_id = 13) const bool SCENE_HAS_TEXTURED_EMITTERS = true;
 layout(constant_id = 14) const bool SCENE_HAS_ENVIRONMENT_MAP = true;
 layout(constant_id = 15) const bool SCENE_HAS_PANES = true;
 layout(constant_id = 16) const bool SCENE_HAS_ABSORPTION = true;
+// Objects shaded flat or by Gouraud's method.
+layout(constant_id = 17) const bool SCENE_HAS_FACETS = true;
+layout(constant_id = 18) const bool SCENE_HAS_TEXTURES = true;
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };

@@ -21,7 +21,8 @@ struct Camera {
     float scale_y;
     // Unit viewing direction.
     vec3 forward;
-    uint pad0;
+    // Height of a pixel, world units: on the plane at distance 1 (perspective), anywhere (orthographic).
+    float pixel_size;
     // Reserved for the thin lens: radius and focal distance.
     float lens_radius;
     float focal_distance;

@@ -73,7 +73,7 @@ const uint MAX_LEAVES = 8u;
 
 // One material. 160 bytes. Colours are linear Rec. 709.
 struct Material {
-    // O_d; for a mirror its reflectance; multiplied by `color_texture` and the vertex colour.
+    // O_d; for a mirror its reflectance; multiplied by its textures and the vertex colour.
     vec3 color;
     // `MODEL_*`.
     uint model;
@@ -103,15 +103,16 @@ struct Material {
     uint flags;
     // O_t of filtered transparency.
     vec3 transmit_color;
-    // Texture of `color`, or `INVALID`.
-    uint color_texture;
+    // Index of the first record in the texture array that belongs to the material.
+    uint first_texture;
     // Beer coefficient inside a dielectric, per scene unit.
     vec3 absorption;
     // First float of the model's own table in the table array; of a blend, the first of its two materials.
     uint table;
     // Radiance the surface adds by itself (no other surface is lit by it under local and whitted).
     vec3 emission;
-    uint pad0;
+    // How many records from `first_texture` on.
+    uint texture_count;
     // Roughness across the tangent, of lobes 0 and 1.
     float m0_v;
     float m1_v;
@@ -150,13 +151,13 @@ Material load_material(uint index) {
     r.flags = w5.w;
     uvec4 w6 = fetch_data(at + 6u);
     r.transmit_color = uintBitsToFloat(w6.xyz);
-    r.color_texture = w6.w;
+    r.first_texture = w6.w;
     uvec4 w7 = fetch_data(at + 7u);
     r.absorption = uintBitsToFloat(w7.xyz);
     r.table = w7.w;
     uvec4 w8 = fetch_data(at + 8u);
     r.emission = uintBitsToFloat(w8.xyz);
-    r.pad0 = w8.w;
+    r.texture_count = w8.w;
     uvec4 w9 = fetch_data(at + 9u);
     r.m0_v = uintBitsToFloat(w9.x);
     r.m1_v = uintBitsToFloat(w9.y);

@@ -2,7 +2,8 @@
 #ifndef LAYOUT_PATH_GLSL
 #define LAYOUT_PATH_GLSL
 
-// A ray to trace, world space. 48 bytes.
+// A ray to trace, world space, and the cone around it that a pixel sees (Akenine-Moeller et al. 2021, "Improved Shader
+// and Texture Level of Detail Using Ray Cones"). 48 bytes.
 struct Ray {
     vec3 origin;
     // Hits at t > t_max do not count; `T_INFINITE` for none. In units of `direction`.
@@ -14,8 +15,9 @@ struct Ray {
     uint skip_primitive;
     // For a sphere that is left: 1 if the ray goes inward (only the far root counts), 0 outward (no root counts).
     uint skip_inward;
-    uint pad0;
-    uint pad1;
+    // Width of the cone at the origin, world units, and what it grows by per unit of distance.
+    float cone_width;
+    float cone_spread;
 };
 
 // Farther than any scene; finite so that no arithmetic meets an infinity.
@@ -95,8 +97,8 @@ PathState load_path_state(uint index) {
     uvec4 w2 = fetch_path(at + 2u);
     r.ray.skip_primitive = w2.x;
     r.ray.skip_inward = w2.y;
-    r.ray.pad0 = w2.z;
-    r.ray.pad1 = w2.w;
+    r.ray.cone_width = uintBitsToFloat(w2.z);
+    r.ray.cone_spread = uintBitsToFloat(w2.w);
     uvec4 w3 = fetch_path(at + 3u);
     r.throughput = uintBitsToFloat(w3);
     uvec4 w4 = fetch_path(at + 4u);
@@ -142,8 +144,8 @@ ShadowRay load_shadow_ray(uint index) {
     uvec4 w2 = fetch_shadow(at + 2u);
     r.ray.skip_primitive = w2.x;
     r.ray.skip_inward = w2.y;
-    r.ray.pad0 = w2.z;
-    r.ray.pad1 = w2.w;
+    r.ray.cone_width = uintBitsToFloat(w2.z);
+    r.ray.cone_spread = uintBitsToFloat(w2.w);
     uvec4 w3 = fetch_shadow(at + 3u);
     r.contribution = uintBitsToFloat(w3);
     uvec4 w4 = fetch_shadow(at + 4u);

@@ -10,6 +10,9 @@ struct CameraRay {
     vec3 origin;
     // Unit.
     vec3 direction;
+    // Width of a pixel's cone at the origin, and what it grows by per unit of distance (in the middle of the picture).
+    float cone_width;
+    float cone_spread;
 };
 
 // The ray through a film point, in pixels of the full frame from its upper left corner (pixel centres at .5); points
@@ -20,9 +23,9 @@ CameraRay camera_ray(Camera camera, float film_x, float film_y) {
     float t = 1.0 - film_y * camera.scale_y;
     vec3 offset = camera.right * s + camera.up * t;
     if (camera.kind == CAMERA_PERSPECTIVE) {
-        return CameraRay(camera.eye, normalize3(camera.forward + offset));
+        return CameraRay(camera.eye, normalize3(camera.forward + offset), 0.0, camera.pixel_size);
     }
-    return CameraRay(camera.eye + offset, normalize3(camera.forward));
+    return CameraRay(camera.eye + offset, normalize3(camera.forward), camera.pixel_size, 0.0);
 }
 
 #endif

@@ -19,7 +19,7 @@ const uint MEASURED_D = 90u;
 const uint MEASURED_P = 180u;
 // 2 / pi.
 const float INV_HALF_PI = 0.636619747;
-// Share of samples that are cosine-weighted.
+// Share of samples that are cosine-weighted; as many follow the table.
 const float MEASURED_COSINE = 0.5;
 
 // A cell's number. `x`: 0..1 from the first to the last of `count` cells.
@@ -79,7 +79,7 @@ float pdf_measured(Material material, vec3 wo, vec3 wi) {
     float size = measured_edge(cell + 1u) - measured_edge(cell);
     float facets = div(share * wm.z, PI * max_(size, 1.0e-12));
     float specular = div(max_(facets, 0.0), 4.0 * max_(dot3(wo, wm), 1.0e-7));
-    return MEASURED_COSINE * (wi.z * INV_PI) + (1.0 - MEASURED_COSINE) * specular;
+    return MEASURED_COSINE * (wi.z * INV_PI + specular);
 }
 
 // Cosine-weighted, or `wo` mirrored about a half vector of a cell drawn by what the table reflects there; what falls below

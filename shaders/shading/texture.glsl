@@ -1,44 +1,52 @@
-// Image textures: wrapping, nearest and bilinear reading with exact weights (row 27).
+// Textures: nearest and bilinear reading with exact weights, and the means over what a pixel covers (row 27).
 //
-// Texel centres are at half-integers; v = 0 is the bottom edge. No mip levels in this version.
+// Texel centres are at half-integers; v = 0 is the bottom edge.
 #ifndef SHADING_TEXTURE_GLSL
 #define SHADING_TEXTURE_GLSL
 
 #include "layout/mod.glsl"
+#include "shading/coordinate.glsl"
+#include "shading/footprint.glsl"
 #include "shading/math.glsl"
+#include "shading/pattern.glsl"
 
 // The f32 nearest to 1 / 255; 255 times it is exactly 1.
 const float INV_255 = 0.003921569;
+// Probes along the longer side of what a pixel covers, at most; beyond, both sides blur.
+const float PROBES_MOST = 8.0;
+// 1 / `PROBES_MOST`.
+const float PROBE_LEAST = 0.125;
 
-// `x`, or 0 if it is infinite or not a number. By its bits: no result may depend on comparing a NaN.
-float finite_or_zero(float x) {
-    return (floatBitsToUint(x) & 0x7f800000u) == 0x7f800000u ? 0.0 : x;
-}
+// How finely a texture is read: `probes` (1 to 8) in a row, `spacing` apart in its own coordinates, each as wide as
+// `width` texels of level 0.
+struct Detail {
+    vec2 spacing;
+    float width;
+    uint probes;
+};
 
-// A texture coordinate brought into 0..1, both ends included. `x`: finite. `wrap`: `WRAP_*`.
-float wrap_coordinate(float x, uint wrap) {
-    switch (wrap) {
-    // Subtracting the floor first is exact but for tiny negative x, which become 1.
-    case WRAP_REPEAT: return x - floor(x);
-    case WRAP_CLAMP: return clamp_(x, 0.0, 1.0);
-    // WRAP_MIRROR: period 2, there and back.
-    default: {
-        float half_x = 0.5 * x;
-        float period = 2.0 * (half_x - floor(half_x));
-        return period <= 1.0 ? period : 2.0 - period;
+// The detail that `footprint` leaves: probes along its longer side, each as wide as the shorter one. A texture without
+// mip levels is read at the point alone.
+// Source: after McCormack et al. 1999, "Feline: Fast Elliptical Lines for Anisotropic Texture Mapping", with equal weights.
+Detail texture_detail(Texture texture_record, Footprint footprint) {
+    if (texture_record.level_count == 0u) {
+        return Detail(vec2(0.0), 0.0, 1u);
     }
-    }
-}
-
-// Texel index -1..size brought into 0..size-1: round the corner for repeat; at the edge itself for clamp and mirror.
-int wrap_texel(int i, int size, uint wrap) {
-    if (i < 0) {
-        return wrap == WRAP_REPEAT ? size - 1 : 0;
-    }
-    if (i >= size) {
-        return wrap == WRAP_REPEAT ? 0 : size - 1;
-    }
-    return i;
+    vec2 size = vec2(float(texture_record.width), float(texture_record.height));
+    vec2 along = texture_vector(texture_record, footprint.along);
+    vec2 across = texture_vector(texture_record, footprint.across);
+    vec2 along_texels = along * size;
+    vec2 across_texels = across * size;
+    float along_length = sqrt_(dot2(along_texels, along_texels));
+    float across_length = sqrt_(dot2(across_texels, across_texels));
+    vec2 longer = along_length >= across_length ? along : across;
+    float major = max_(along_length, across_length);
+    float minor = min_(along_length, across_length);
+    // Bilinear reading is one texel wide in any case; a pattern can be as sharp as the pixel.
+    float finest = texture_record.format >= PATTERN_CHECKER ? 0.0 : 1.0;
+    float width = max_(max_(minor, major * PROBE_LEAST), finest);
+    float probes = clamp_(floor(div(major, width) + 0.5), 1.0, PROBES_MOST);
+    return Detail(longer * rcp(probes), width, uint(probes));
 }
 
 // Channel `shift` / 8 of a packed texel, 0..255.
@@ -84,40 +92,72 @@ vec4 read_texel(Texture texture_record, int column, int row) {
     }
 }
 
-// The texture at `uv` (before its own scale and offset), linear; alpha in lane 3. Any uv is safe: a coordinate that is
-// infinite or not a number reads as 0.
-vec4 sample_texture(Texture texture_record, vec2 uv) {
-    float u = wrap_coordinate(finite_or_zero(uv.x * texture_record.scale_u + texture_record.offset_u), texture_record.wrap_u);
-    float v = wrap_coordinate(finite_or_zero(uv.y * texture_record.scale_v + texture_record.offset_v), texture_record.wrap_v);
-    int width = int(texture_record.width);
-    int height = int(texture_record.height);
+// The image at its own coordinates `uv` (finite), linear; alpha in lane 3.
+vec4 read_image(Texture texture_record, vec2 uv) {
+    bool bilinear = texture_record.magnify == MAGNIFY_BILINEAR;
     // 0..size: at most 65,535, so the conversions below are in range.
-    float x = u * float(texture_record.width);
-    float y = v * float(texture_record.height);
-    if (texture_record.magnify == MAGNIFY_BILINEAR) {
-        float left = floor(x - 0.5);
-        float below = floor(y - 0.5);
-        float weight_x = (x - 0.5) - left;
-        float weight_y = (y - 0.5) - below;
-        int x0 = wrap_texel(int(left), width, texture_record.wrap_u);
-        int x1 = wrap_texel(int(left) + 1, width, texture_record.wrap_u);
-        int y0 = wrap_texel(int(below), height, texture_record.wrap_v);
-        int y1 = wrap_texel(int(below) + 1, height, texture_record.wrap_v);
-        vec4 t00 = read_texel(texture_record, x0, y0);
-        vec4 t10 = read_texel(texture_record, x1, y0);
-        vec4 t01 = read_texel(texture_record, x0, y1);
-        vec4 t11 = read_texel(texture_record, x1, y1);
+    float x = wrap_coordinate(uv.x, texture_record.wrap_u) * float(texture_record.width);
+    float y = wrap_coordinate(uv.y, texture_record.wrap_v) * float(texture_record.height);
+    float shift = bilinear ? 0.5 : 0.0;
+    float left = floor(x - shift);
+    float below = floor(y - shift);
+    float weight_x = (x - shift) - left;
+    float weight_y = (y - shift) - below;
+    // Nearest: the far edge itself belongs to the last texel.
+    uint wrap_u = bilinear ? texture_record.wrap_u : WRAP_CLAMP;
+    uint wrap_v = bilinear ? texture_record.wrap_v : WRAP_CLAMP;
+    vec4 row = vec4(0.0);
+    vec4 image = vec4(0.0);
+    // Left and right below, left and right above; nearest takes the first. One place that reads: it is inlined once.
+    int corners = bilinear ? 4 : 1;
+    for (int corner = 0; corner < corners; corner++) {
+        int column_index = wrap_texel(int(left) + (corner & 1), int(texture_record.width), wrap_u);
+        int row_index = wrap_texel(int(below) + (corner >> 1), int(texture_record.height), wrap_v);
+        vec4 texel = read_texel(texture_record, column_index, row_index);
         // a + (b - a) t leaves equal neighbours exactly as they are.
-        vec4 bottom = t00 + (t10 - t00) * weight_x;
-        vec4 top = t01 + (t11 - t01) * weight_x;
-        return bottom + (top - bottom) * weight_y;
+        row = (corner & 1) == 0 ? texel : row + (texel - row) * weight_x;
+        image = corner <= 1 ? row : image;
     }
-    // MAGNIFY_NEAREST; the far edge itself belongs to the last texel.
-    int column = int(floor(x));
-    int row = int(floor(y));
-    int last_column = column >= width ? width - 1 : column;
-    int last_row = row >= height ? height - 1 : row;
-    return read_texel(texture_record, last_column, last_row);
+    return bilinear ? image + (row - image) * weight_y : image;
+}
+
+// The texture at its own coordinates `uv` (finite), linear; alpha in lane 3. Trilinear between the two levels nearest to
+// the detail's width, and the mean of its probes.
+vec4 filter_texture(Texture texture_record, vec2 uv, Detail detail) {
+    bool is_pattern = texture_record.format >= PATTERN_CHECKER;
+    // The finer of the two levels, and the share of the coarser.
+    float last = max_(float(texture_record.level_count) - 1.0, 0.0);
+    float lambda = detail.width > 1.0 ? min_(log2_(detail.width), last) : 0.0;
+    float finer = floor(lambda);
+    float blend = lambda - finer;
+    uint levels = blend > 0.0 ? 2u : 1u;
+    vec4 result = vec4(0.0);
+    for (uint offset = 0u; offset < levels; offset++) {
+        uint index = uint(finer) + offset;
+        Texture level = texture_record;
+        if (index != 0u) {
+            level = load_texture(texture_record.first_level + (index - 1u));
+        }
+        vec4 sum = vec4(0.0);
+        for (uint probe = 0u; probe < detail.probes; probe++) {
+            vec2 place = uv + detail.spacing * ((float(probe) + 0.5) - 0.5 * float(detail.probes));
+            vec4 texel;
+            if (is_pattern) {
+                texel = sample_pattern(level, place, detail.width * rcp(float(texture_record.width)));
+            } else {
+                texel = read_image(level, place);
+            }
+            sum = sum + texel;
+        }
+        vec4 mean = detail.probes == 1u ? sum : sum * rcp(float(detail.probes));
+        result = offset == 0u ? mean : result + (mean - result) * blend;
+    }
+    return result;
+}
+
+// The image at the surface's `uv`, read at the point alone; any uv is safe. Not for patterns.
+vec4 sample_texture(Texture texture_record, vec2 uv) {
+    return read_image(texture_record, texture_uv(texture_record, uv));
 }
 #endif
 

@@ -33,6 +33,9 @@ struct Surface {
     uint kind;
     // Bound of the distance between `position` and the surface as rays see it, world units.
     float error;
+    // Width of the ray's cone here, and what it grows by per unit of distance.
+    float cone_width;
+    float cone_spread;
 };
 
 // `v` made unit; `otherwise` if it is (as good as) zero.
@@ -79,11 +82,13 @@ Surface sphere_surface(Instance instance, Ray ray, Hit hit) {
         hit.instance,
         0u,
         instance.kind,
-        position_error(instance, vec3(1.0))
+        position_error(instance, vec3(1.0)),
+        ray.cone_width + ray.cone_spread * hit.t,
+        ray.cone_spread
     );
 }
 
-Surface triangle_surface(Instance instance, Hit hit) {
+Surface triangle_surface(Instance instance, Ray ray, Hit hit) {
     Face face = load_face(instance.first_face + hit.primitive);
     Vertex p0 = load_vertex(face.i0);
     Vertex p1 = load_vertex(face.i1);
@@ -114,7 +119,9 @@ Surface triangle_surface(Instance instance, Hit hit) {
         hit.instance,
         hit.primitive,
         instance.kind,
-        position_error(instance, size)
+        position_error(instance, size),
+        ray.cone_width + ray.cone_spread * hit.t,
+        ray.cone_spread
     );
 }
 
@@ -143,7 +150,7 @@ Surface surface_at(Ray ray, Hit hit) {
     if (SCENE_HAS_SPHERES && instance.kind == KIND_SPHERE) {
         return sphere_surface(instance, ray, hit);
     }
-    return triangle_surface(instance, hit);
+    return triangle_surface(instance, ray, hit);
 }
 #endif
 

@@ -25,16 +25,18 @@ uint choose_emitter(vec2 u) {
 }
 
 // Radiance of the point of a textured emitter that `lit` was drawn to from `position` with `u`.
-Spectrum textured_radiance(Emitter emitter, vec3 position, vec2 u, LightSample lit) {
+Spectrum textured_radiance(Emitter emitter, SampleKey key, vec3 position, vec2 u, LightSample lit) {
     vec2 b = square_to_uniform_triangle(u);
-    Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0u, 0u);
+    Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0.0, 0.0);
     Hit hit = Hit(lit.distance, b.x, b.y, emitter.instance, emitter.primitive, 0u, 0u, 0u);
-    Material material = material_at(surface_at(ray, hit));
+    Surface surface = surface_at(ray, hit);
+    Material material = material_at(lit.wi, hit, key, surface);
     return spectrum_from_rgb(emission_material(material) * own_weight(material));
 }
 
-// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1.
-LightSample sample_emitter(Emitter emitter, Surface surface, vec2 u) {
+// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1. `key`: of the
+// path.
+LightSample sample_emitter(Emitter emitter, SampleKey key, Surface surface, vec2 u) {
     vec3 position = surface.position;
     if (HAS_EMITTER(EMITTER_ENVIRONMENT) && emitter.kind == EMITTER_ENVIRONMENT) {
         EnvironmentSample seen = sample_environment(u);
@@ -54,7 +56,7 @@ LightSample sample_emitter(Emitter emitter, Surface surface, vec2 u) {
         lit = sample_triangle_light(emitter, position, u);
     }
     if (SCENE_HAS_TEXTURED_EMITTERS && (emitter.flags & EMITTER_TEXTURED) != 0u && lit.pdf_solid_angle > 0.0) {
-        lit.radiance = textured_radiance(emitter, position, u, lit) * rcp(lit.pdf_solid_angle);
+        lit.radiance = textured_radiance(emitter, key, position, u, lit) * rcp(lit.pdf_solid_angle);
     }
     return lit;
 }

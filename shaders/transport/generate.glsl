@@ -38,8 +38,8 @@ PathState generate(Batch batch, uint slot) {
     path.ray.skip_instance = INVALID;
     path.ray.skip_primitive = INVALID;
     path.ray.skip_inward = 0u;
-    path.ray.pad0 = 0u;
-    path.ray.pad1 = 0u;
+    path.ray.cone_width = camera.cone_width;
+    path.ray.cone_spread = camera.cone_spread;
     path.throughput = spectrum_from_rgb(vec3(pixel_filter.weight));
     path.slot = slot;
     path.pixel = pixel;

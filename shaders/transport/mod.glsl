@@ -18,6 +18,8 @@ const uint DIMENSION_LEAF = 32u;
 const uint DITHER_SURFACE = 0x10000000u;
 const uint DITHER_BACKGROUND = 0x10000001u;
 const uint DITHER_LIGHT = 0x20000000u;
+// Added to both for each further point at which one hit is shaded.
+const uint DITHER_CORNER = 0x04000000u;
 
 // Branches of a path: hashed into the child's path id.
 const uint LOBE_THROUGH = 1u;

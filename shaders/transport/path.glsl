@@ -60,7 +60,7 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
     if (emitter.kind != EMITTER_LIGHT) {
         u = sample_2d(key, DIMENSION_LIGHT);
     }
-    LightSample lit = sample_emitter(emitter, surface, u);
+    LightSample lit = sample_emitter(emitter, key, surface, u);
     vec3 wo_local = to_local(frame, wo);
     vec3 wi_local = to_local(frame, lit.wi);
     if (spectrum_max(lit.radiance) <= 0.0 || !consistent(surface, wo, lit.wi, wo_local, wi_local)) {

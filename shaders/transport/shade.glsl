@@ -8,8 +8,8 @@
 #include "shading/sampling.glsl"
 #include "shading/spectrum.glsl"
 #include "trace/surface.glsl"
+#include "transport/faceted.glsl"
 #include "transport/generate.glsl"
-#include "transport/leaf.glsl"
 #include "transport/local.glsl"
 #include "transport/path.glsl"
 #include "transport/textured.glsl"
@@ -44,8 +44,7 @@ void shade(PathState incoming, Hit hit) {
     }
     Surface surface = surface_at(path.ray, hit);
     uint named = surface.material;
-    surface.material = leaf_material(named, key);
-    Material material = material_at(surface);
+    Material material = material_at(path.ray.direction, hit, key, surface);
     if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
@@ -55,7 +54,16 @@ void shade(PathState incoming, Hit hit) {
         shade_path(path, key, hit, surface, material);
         return;
     }
-    shade_local(path, key, surface, material);
+    uint flags = SCENE_HAS_FACETS && SCENE_INTEGRATOR == INTEGRATOR_LOCAL ? load_instance(hit.instance).flags : 0u;
+    for (uint index = 0u; index < shading_points(flags); index++) {
+        ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
+        Material material_there = material;
+        if (faceted(flags)) {
+            material_there = material_at(-point.wo, point.hit, key, point.surface);
+        }
+        shade_local(path, key, point, material_there);
+    }
+    shade_through(path, surface, material);
     if (SCENE_INTEGRATOR == INTEGRATOR_WHITTED && path.depth < header.max_depth) {
         shade_whitted(path, surface, material);
     }

@@ -1,18 +1,91 @@
-// Materials with their textures.
+// The material of a point: its record with vertex colour and textures applied.
 #ifndef TRANSPORT_TEXTURED_GLSL
 #define TRANSPORT_TEXTURED_GLSL
 
 #include "layout/mod.glsl"
+#include "shading/coordinate.glsl"
+#include "shading/footprint.glsl"
+#include "shading/math.glsl"
+#include "shading/parameter.glsl"
+#include "shading/sampling.glsl"
 #include "shading/texture.glsl"
 #include "trace/surface.glsl"
+#include "trace/tangent.glsl"
+#include "transport/mod.glsl"
 
-// The surface's material with its texture and vertex colour applied.
-Material material_at(Surface surface) {
+// `bare` with its textures applied, at `surface`, found for `hit` along `direction` (unit); a normal or bump map turns
+// `surface.normal`. One loop with one place that fetches, as each place is inlined and costs compile time.
+Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface surface) {
+    Material material = bare;
+    if (!SCENE_HAS_TEXTURES || material.texture_count == 0u) {
+        return material;
+    }
+    UvGradients gradients = gradients_at(surface, hit);
+    Footprint footprint = cone_footprint(gradients, surface.normal_geometric, direction, surface.cone_width);
+    uint count = material.texture_count < TEXTURES_MOST ? material.texture_count : TEXTURES_MOST;
+    for (uint index = 0u; index < count; index++) {
+        Texture texture_record = load_texture(material.first_texture + index);
+        Detail detail = texture_detail(texture_record, footprint);
+        vec2 uv = texture_uv(texture_record, surface.uv);
+        bool raises = texture_record.parameter == PARAMETER_BUMP;
+        // Heights are compared half a texel, or half of what is covered, to each side.
+        float texels = max_(detail.width, 1.0);
+        float reach_u = div(0.5 * texels, float(texture_record.width));
+        float reach_v = div(0.5 * texels, float(texture_record.height));
+        vec3 value = vec3(0.0);
+        float height_u = 0.0;
+        float height_v = 0.0;
+        // To the right, to the left, above, below; other textures are read once, on the spot.
+        uint taps = raises ? 4u : 1u;
+        for (uint tap = 0u; tap < taps; tap++) {
+            float side = (tap & 1u) == 0u ? 1.0 : -1.0;
+            vec2 reach = tap < 2u ? vec2(reach_u * side, 0.0) : vec2(0.0, reach_v * side);
+            vec2 place = raises ? uv + reach : uv;
+            value = channel_value(filter_texture(texture_record, place, detail), texture_record.channel);
+            height_u = tap < 2u ? height_u + value.x * side : height_u;
+            height_v = tap < 2u ? height_v : height_v + value.x * side;
+        }
+        if (raises) {
+            UvGradients own = texture_gradients(texture_record, gradients);
+            float rise_u = div(height_u, 2.0 * reach_u) * texture_record.scale;
+            float rise_v = div(height_v, 2.0 * reach_v) * texture_record.scale;
+            surface.normal = raised_normal(surface.normal, own, rise_u, rise_v);
+        } else if (texture_record.parameter == PARAMETER_NORMAL) {
+            UvGradients own = texture_gradients(texture_record, gradients);
+            surface.normal = mapped_normal(surface.normal, own, value, texture_record.scale);
+        } else {
+            material = apply_parameter(material, texture_record.parameter, value, texture_record.scale);
+        }
+    }
+    return material;
+}
+
+// The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour. Of a blend it is
+// one that is none, drawn by the weights, (1 - extra) of the first and extra of the second; `surface.material` names it.
+// `key`: of the path, which meets one surface at most.
+Material material_at(vec3 direction, Hit hit, SampleKey key, inout Surface surface) {
     Material material = load_material(surface.material);
-    material.color *= surface.color;
-    if (material.color_texture != INVALID) {
-        vec4 texel = sample_texture(load_texture(material.color_texture), surface.uv);
-        material.color *= vec3(texel.x, texel.y, texel.z);
+    if (!HAS_MODEL(MODEL_BLEND)) {
+        material.color *= surface.color;
+        return apply_textures(material, direction, hit, surface);
+    }
+    float u = 0.0;
+    if (material.model == MODEL_BLEND) {
+        u = sample_1d(key, DIMENSION_LEAF);
+    }
+    for (uint level = 0u; level < MAX_LEAVES; level++) {
+        material.color *= surface.color;
+        material = apply_textures(material, direction, hit, surface);
+        // Bake lets no blend be deeper.
+        if (material.model != MODEL_BLEND || level + 1u == MAX_LEAVES) {
+            break;
+        }
+        float weight = clamp_(material.extra, 0.0, 1.0);
+        bool second = u < weight;
+        // What is left of u is as random again.
+        u = second ? div(u, weight) : div(u - weight, 1.0 - weight);
+        surface.material = second ? material.table + 1u : material.table;
+        material = load_material(surface.material);
     }
     return material;
 }

@@ -8,7 +8,7 @@ use super::{BakeError, SceneData};
 use crate::layout::{
     EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_ONE_SIDED, EMITTER_SPHERE, EMITTER_TEXTURED, EMITTER_TRIANGLE, Emitter,
     INVALID, Instance, KIND_SPHERE, LIGHT_DIRECTIONAL, LIGHT_SPOT, Light, MATERIAL_EMIT_ONE_SIDED, MODEL_BLEND,
-    MODEL_EMISSIVE, Material,
+    MODEL_EMISSIVE, Material, PARAMETER_COLOR, PARAMETER_EMISSION,
 };
 use crate::scene::{Background, Scene};
 use crate::shading::material::{emission_material, own_weight};
@@ -134,7 +134,14 @@ fn collect_instance(data: &SceneData, index: usize, primitives: &dyn Fn(usize) -
         let sided = if (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0 { EMITTER_ONE_SIDED } else { 0 };
         sided | if textured { EMITTER_TEXTURED } else { 0 }
     };
-    let textured = |material: &Material| material.model == MODEL_EMISSIVE && material.color_texture != INVALID;
+    let textured = |material: &Material| {
+        let (first, count) = (material.first_texture as usize, material.texture_count as usize);
+        data.textures[first..first + count].iter().any(|texture| match texture.parameter {
+            PARAMETER_EMISSION => true,
+            PARAMETER_COLOR => material.model == MODEL_EMISSIVE,
+            _ => false,
+        })
+    };
     let mut power = 0.0;
     let sides = |material: &Material| if (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0 { 1.0 } else { 2.0 };
     if instance.kind == KIND_SPHERE {

@@ -100,5 +100,7 @@ fn brightness(texture: &Texture, scale: Rgb) -> Vec<f64> {
         TextureData::Float(texels) => {
             texels.iter().map(|t| of([f64::from(t[0]), f64::from(t[1]), f64::from(t[2])])).collect()
         }
+        // No image to sample from; it counts as black.
+        TextureData::Pattern(_) => vec![0.0; texture.width as usize * texture.height as usize],
     }
 }

@@ -1,11 +1,10 @@
-//! Lights and textures as the device reads them.
+//! Lights as the device reads them.
 
 use crate::layout::{
-    ATTENUATION_INVERSE_SQUARE, ATTENUATION_NONE, ATTENUATION_POLYNOMIAL, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT, Light,
-    MAGNIFY_BILINEAR, MAGNIFY_NEAREST, TEXEL_FLOAT, TEXEL_LINEAR8, TEXEL_SRGB8, Texture, WRAP_CLAMP, WRAP_MIRROR,
-    WRAP_REPEAT,
+    ATTENUATION_INVERSE_SQUARE, ATTENUATION_NONE, ATTENUATION_POLYNOMIAL, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT,
+    Light,
 };
-use crate::scene::{self, Attenuation, IntensityUnit, LightKind, TextureData, Wrap};
+use crate::scene::{self, Attenuation, IntensityUnit, LightKind};
 use glam::{DVec3, Vec3};
 
 /// `v` made unit in double precision; +z if it has no direction.
@@ -53,42 +52,4 @@ pub fn bake_light(light: &scene::Light) -> Light {
         Attenuation::None => baked.attenuation = ATTENUATION_NONE,
     }
     baked
-}
-
-/// One texture; its words are appended to `texels`.
-pub fn bake_texture(texture: &scene::Texture, texels: &mut Vec<u32>) -> Texture {
-    let wrap = |wrap| match wrap {
-        Wrap::Repeat => WRAP_REPEAT,
-        Wrap::Clamp => WRAP_CLAMP,
-        Wrap::Mirror => WRAP_MIRROR,
-    };
-    let first_word = texels.len() as u32;
-    let format = match &texture.data {
-        TextureData::Srgb8(data) => {
-            texels.extend(data.iter().map(|&rgba| u32::from_le_bytes(rgba)));
-            TEXEL_SRGB8
-        }
-        TextureData::Linear8(data) => {
-            texels.extend(data.iter().map(|&rgba| u32::from_le_bytes(rgba)));
-            TEXEL_LINEAR8
-        }
-        TextureData::Float(data) => {
-            texels.extend(data.iter().flatten().map(|x| x.to_bits()));
-            TEXEL_FLOAT
-        }
-    };
-    Texture {
-        width: texture.width,
-        height: texture.height,
-        first_word,
-        format,
-        wrap_u: wrap(texture.wrap_u),
-        wrap_v: wrap(texture.wrap_v),
-        magnify: if texture.bilinear { MAGNIFY_BILINEAR } else { MAGNIFY_NEAREST },
-        scale_u: texture.scale[0],
-        scale_v: texture.scale[1],
-        offset_u: texture.offset[0],
-        offset_v: texture.offset[1],
-        ..Texture::default()
-    }
 }

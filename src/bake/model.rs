@@ -5,7 +5,7 @@ use super::albedo::{conductor_table, constant_table, diffuse_reflectance, keleme
 use super::measured::measured_table;
 use crate::layout::*;
 use crate::scene::{
-    self, Distribution, Fresnel, Lobe, Masking, Model, Parameter, Principled, Table, Transparency, WardNormalisation,
+    self, Distribution, Fresnel, Lobe, Masking, Model, Principled, Table, Transparency, WardNormalisation,
 };
 use glam::Vec3;
 
@@ -16,12 +16,12 @@ const BLEND_LEAVES: usize = MAX_LEAVES as usize;
 /// Blends within blends, at most.
 const BLEND_DEPTH: usize = 8;
 
-/// One material; its table is appended to `tables`. `traced`: for path tracing, which wants reciprocal models. A blend's
-/// materials are found by `bake_blends` later.
+/// One material; its table is appended to `tables`. A blend's materials are found by `bake_blends` later.
+/// `traced`: for path tracing, which wants reciprocal models.
 pub fn bake_material(
     material: &scene::Material,
-    traced: bool,
     measured: &[Table],
+    traced: bool,
     tables: &mut Vec<f32>,
 ) -> Result<Material, BakeError> {
     let mut baked = Material {
@@ -32,7 +32,6 @@ pub fn bake_material(
         k_s: material.k_s,
         k_r: material.k_r,
         eta: Vec3::ONE,
-        color_texture: material.texture(Parameter::Color).map_or(INVALID, |id| id.0),
         emission: material.emission,
         table: INVALID,
         ..Material::default()
@@ -43,7 +42,7 @@ pub fn bake_material(
     if !material.emission_two_sided {
         baked.flags |= MATERIAL_EMIT_ONE_SIDED;
     }
-    bake_model(material, traced, measured, &mut baked, tables)?;
+    bake_model(material, measured, traced, &mut baked, tables)?;
     match material.transparency {
         None if matches!(material.model, Model::Null) => baked.k_t = 1.0,
         // What does not cover lets everything through (`path` draws it at random, the others as a branch).
@@ -60,8 +59,8 @@ pub fn bake_material(
 
 fn bake_model(
     material: &scene::Material,
-    traced: bool,
     measured: &[Table],
+    traced: bool,
     baked: &mut Material,
     tables: &mut Vec<f32>,
 ) -> Result<(), BakeError> {
@@ -297,4 +296,3 @@ pub fn casts_shadow(material: &scene::Material, traced: bool) -> bool {
     };
     material.casts_shadow.unwrap_or(traced || !pane)
 }
-

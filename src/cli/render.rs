@@ -28,7 +28,7 @@ Examples:
   gonio render scene.toml --pixel 320,200                every bounce of one sample
   cat scene.toml | gonio render - -o - | display         from standard input to standard output")]
 pub struct RenderArgs {
-    /// .toml, .obj, .ply, .gltf, .glb; `-` is TOML on standard input.
+    /// .toml, .obj, .ply, .gltf, .glb, .xml (Mitsuba); `-` is TOML on standard input.
     scene: PathBuf,
     /// .png, .exr, .hdr, or .gfilm for the film itself; `-` is PNG on standard output. Default: the scene's name, .png.
     #[arg(short, long, value_name = "FILE")]
@@ -193,7 +193,10 @@ fn render_passes(
 /// Says what the user should know of the samples.
 fn report(film: &Film, counters: &Counters) {
     if counters.limited > 0 {
-        log::warn!("{} contributions were limited by \"clamp\": the picture is darker than the scene", counters.limited);
+        log::warn!(
+            "{} contributions were limited by \"clamp\": the picture is darker than the scene",
+            counters.limited
+        );
     }
     if film.nan_count() > 0 {
         log::warn!("{} contributions were not a number and count as 0", film.nan_count());

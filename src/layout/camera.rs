@@ -24,7 +24,8 @@ pub struct Camera {
     pub scale_y: f32,
     /// Unit viewing direction.
     pub forward: Vec3,
-    pub _pad0: u32,
+    /// Height of a pixel, world units: on the plane at distance 1 (perspective), anywhere (orthographic).
+    pub pixel_size: f32,
     /// Reserved for the thin lens: radius and focal distance.
     pub lens_radius: f32,
     pub focal_distance: f32,

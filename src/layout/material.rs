@@ -76,7 +76,7 @@ pub const MAX_LEAVES: u32 = 8;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Material {
-    /// O_d; for a mirror its reflectance; multiplied by `color_texture` and the vertex colour.
+    /// O_d; for a mirror its reflectance; multiplied by its textures and the vertex colour.
     pub color: Vec3,
     /// `MODEL_*`.
     pub model: u32,
@@ -106,15 +106,16 @@ pub struct Material {
     pub flags: u32,
     /// O_t of filtered transparency.
     pub transmit_color: Vec3,
-    /// Texture of `color`, or `INVALID`.
-    pub color_texture: u32,
+    /// Index of the first record in the texture array that belongs to the material.
+    pub first_texture: u32,
     /// Beer coefficient inside a dielectric, per scene unit.
     pub absorption: Vec3,
     /// First float of the model's own table in the table array; of a blend, the first of its two materials.
     pub table: u32,
     /// Radiance the surface adds by itself (no other surface is lit by it under local and whitted).
     pub emission: Vec3,
-    pub _pad0: u32,
+    /// How many records from `first_texture` on.
+    pub texture_count: u32,
     /// Roughness across the tangent, of lobes 0 and 1.
     pub m0_v: f32,
     pub m1_v: f32,

@@ -3,7 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
 
-/// A ray to trace, world space. 48 bytes.
+/// A ray to trace, world space, and the cone around it that a pixel sees (Akenine-Moeller et al. 2021, "Improved Shader
+/// and Texture Level of Detail Using Ray Cones"). 48 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Ray {
@@ -17,8 +18,9 @@ pub struct Ray {
     pub skip_primitive: u32,
     /// For a sphere that is left: 1 if the ray goes inward (only the far root counts), 0 outward (no root counts).
     pub skip_inward: u32,
-    pub _pad0: u32,
-    pub _pad1: u32,
+    /// Width of the cone at the origin, world units, and what it grows by per unit of distance.
+    pub cone_width: f32,
+    pub cone_spread: f32,
 }
 
 /// Farther than any scene; finite so that no arithmetic meets an infinity.

@@ -209,6 +209,8 @@ pub enum Parameter {
     RoughnessV,
     Metallic,
     Opacity,
+    /// Opacity 0 where it would be below `scale`, and 1 from there on.
+    Mask,
     /// Of a `Blend`.
     Weight,
     /// Tangent-space normal, three channels.

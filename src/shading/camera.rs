@@ -11,6 +11,9 @@ pub struct CameraRay {
     pub origin: Vec3,
     /// Unit.
     pub direction: Vec3,
+    /// Width of a pixel's cone at the origin, and what it grows by per unit of distance (in the middle of the picture).
+    pub cone_width: f32,
+    pub cone_spread: f32,
 }
 
 /// The ray through a film point, in pixels of the full frame from its upper left corner (pixel centres at .5); points
@@ -22,9 +25,19 @@ pub fn camera_ray(camera: &Camera, film_x: f32, film_y: f32) -> CameraRay {
     let t = 1.0 - film_y * camera.scale_y;
     let offset = camera.right * s + camera.up * t;
     if camera.kind == CAMERA_PERSPECTIVE {
-        return CameraRay { origin: camera.eye, direction: normalize3(camera.forward + offset) };
+        return CameraRay {
+            origin: camera.eye,
+            direction: normalize3(camera.forward + offset),
+            cone_width: 0.0,
+            cone_spread: camera.pixel_size,
+        };
     }
-    CameraRay { origin: camera.eye + offset, direction: normalize3(camera.forward) }
+    CameraRay {
+        origin: camera.eye + offset,
+        direction: normalize3(camera.forward),
+        cone_width: camera.pixel_size,
+        cone_spread: 0.0,
+    }
 }
 
 #[cfg(test)]

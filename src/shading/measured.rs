@@ -20,7 +20,7 @@ pub const MEASURED_D: u32 = 90;
 pub const MEASURED_P: u32 = 180;
 /// 2 / pi.
 pub const INV_HALF_PI: f32 = 0.636619747;
-/// Share of samples that are cosine-weighted.
+/// Share of samples that are cosine-weighted; as many follow the table.
 pub const MEASURED_COSINE: f32 = 0.5;
 
 /// A cell's number. `x`: 0..1 from the first to the last of `count` cells.
@@ -89,7 +89,7 @@ pub fn pdf_measured(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) 
     let size = measured_edge(cell + 1) - measured_edge(cell);
     let facets = div(share * wm.z, PI * max_(size, 1.0e-12));
     let specular = div(max_(facets, 0.0), 4.0 * max_(dot3(wo, wm), 1.0e-7));
-    MEASURED_COSINE * (wi.z * INV_PI) + (1.0 - MEASURED_COSINE) * specular
+    MEASURED_COSINE * (wi.z * INV_PI + specular)
 }
 
 /// Cosine-weighted, or `wo` mirrored about a half vector of a cell drawn by what the table reflects there; what falls below

@@ -1,48 +1,56 @@
-//! Image textures: wrapping, nearest and bilinear reading with exact weights (row 27).
+//! Textures: nearest and bilinear reading with exact weights, and the means over what a pixel covers (row 27).
 //!
-//! Texel centres are at half-integers; v = 0 is the bottom edge. No mip levels in this version.
+//! Texel centres are at half-integers; v = 0 is the bottom edge.
 
 use crate::layout::{
-    MAGNIFY_BILINEAR, SceneView, TEXEL_LINEAR8, TEXEL_SRGB8, Texture, WRAP_CLAMP, WRAP_REPEAT, load_table, load_texel,
+    MAGNIFY_BILINEAR, PATTERN_CHECKER, SceneView, TEXEL_LINEAR8, TEXEL_SRGB8, Texture, WRAP_CLAMP, load_table,
+    load_texel, load_texture,
 };
-use crate::shading::math::clamp_;
+use crate::shading::coordinate::{texture_uv, texture_vector, wrap_coordinate, wrap_texel};
+use crate::shading::footprint::Footprint;
+use crate::shading::math::{clamp_, div, dot2, log2_, max_, min_, rcp, sqrt_};
+use crate::shading::pattern::sample_pattern;
 use glam::{Vec2, Vec4};
 
 /// The f32 nearest to 1 / 255; 255 times it is exactly 1.
 const INV_255: f32 = 0.003_921_569;
+/// Probes along the longer side of what a pixel covers, at most; beyond, both sides blur.
+const PROBES_MOST: f32 = 8.0;
+/// 1 / `PROBES_MOST`.
+const PROBE_LEAST: f32 = 0.125;
 
-/// `x`, or 0 if it is infinite or not a number. By its bits: no result may depend on comparing a NaN.
-#[inline]
-pub fn finite_or_zero(x: f32) -> f32 {
-    if (x.to_bits() & 0x7f80_0000) == 0x7f80_0000 { 0.0 } else { x }
+/// How finely a texture is read: `probes` (1 to 8) in a row, `spacing` apart in its own coordinates, each as wide as
+/// `width` texels of level 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Detail {
+    pub spacing: Vec2,
+    pub width: f32,
+    pub probes: u32,
 }
 
-/// A texture coordinate brought into 0..1, both ends included. `x`: finite. `wrap`: `WRAP_*`.
+/// The detail that `footprint` leaves: probes along its longer side, each as wide as the shorter one. A texture without
+/// mip levels is read at the point alone.
+/// Source: after McCormack et al. 1999, "Feline: Fast Elliptical Lines for Anisotropic Texture Mapping", with equal weights.
 #[inline]
-pub fn wrap_coordinate(x: f32, wrap: u32) -> f32 {
-    match wrap {
-        // Subtracting the floor first is exact but for tiny negative x, which become 1.
-        WRAP_REPEAT => x - x.floor(),
-        WRAP_CLAMP => clamp_(x, 0.0, 1.0),
-        // WRAP_MIRROR: period 2, there and back.
-        _ => {
-            let half_x = 0.5 * x;
-            let period = 2.0 * (half_x - half_x.floor());
-            if period <= 1.0 { period } else { 2.0 - period }
-        }
+pub fn texture_detail(texture: &Texture, footprint: Footprint) -> Detail {
+    if texture.level_count == 0 {
+        return Detail { spacing: Vec2::ZERO, width: 0.0, probes: 1 };
     }
-}
-
-/// Texel index -1..size brought into 0..size-1: round the corner for repeat; at the edge itself for clamp and mirror.
-#[inline]
-pub fn wrap_texel(i: i32, size: i32, wrap: u32) -> i32 {
-    if i < 0 {
-        return if wrap == WRAP_REPEAT { size - 1 } else { 0 };
-    }
-    if i >= size {
-        return if wrap == WRAP_REPEAT { 0 } else { size - 1 };
-    }
-    i
+    let size = Vec2::new(texture.width as f32, texture.height as f32);
+    let along = texture_vector(texture, footprint.along);
+    let across = texture_vector(texture, footprint.across);
+    let along_texels = along * size;
+    let across_texels = across * size;
+    let along_length = sqrt_(dot2(along_texels, along_texels));
+    let across_length = sqrt_(dot2(across_texels, across_texels));
+    let longer = if along_length >= across_length { along } else { across };
+    let major = max_(along_length, across_length);
+    let minor = min_(along_length, across_length);
+    // Bilinear reading is one texel wide in any case; a pattern can be as sharp as the pixel.
+    let finest = if texture.format >= PATTERN_CHECKER { 0.0 } else { 1.0 };
+    let width = max_(max_(minor, major * PROBE_LEAST), finest);
+    let probes = clamp_((div(major, width) + 0.5).floor(), 1.0, PROBES_MOST);
+    Detail { spacing: longer * rcp(probes), width, probes: probes as u32 }
 }
 
 /// Channel `shift` / 8 of a packed texel, 0..255.
@@ -89,39 +97,69 @@ pub fn read_texel(scene: &SceneView, texture: &Texture, column: i32, row: i32) -
     }
 }
 
-/// The texture at `uv` (before its own scale and offset), linear; alpha in lane 3. Any uv is safe: a coordinate that is
-/// infinite or not a number reads as 0.
+/// The image at its own coordinates `uv` (finite), linear; alpha in lane 3.
+#[inline]
+pub fn read_image(scene: &SceneView, texture: &Texture, uv: Vec2) -> Vec4 {
+    let bilinear = texture.magnify == MAGNIFY_BILINEAR;
+    // 0..size: at most 65,535, so the conversions below are in range.
+    let x = wrap_coordinate(uv.x, texture.wrap_u) * texture.width as f32;
+    let y = wrap_coordinate(uv.y, texture.wrap_v) * texture.height as f32;
+    let shift = if bilinear { 0.5 } else { 0.0 };
+    let left = (x - shift).floor();
+    let below = (y - shift).floor();
+    let weight_x = (x - shift) - left;
+    let weight_y = (y - shift) - below;
+    // Nearest: the far edge itself belongs to the last texel.
+    let wrap_u = if bilinear { texture.wrap_u } else { WRAP_CLAMP };
+    let wrap_v = if bilinear { texture.wrap_v } else { WRAP_CLAMP };
+    let mut row = Vec4::ZERO;
+    let mut image = Vec4::ZERO;
+    // Left and right below, left and right above; nearest takes the first. One place that reads: it is inlined once.
+    let corners = if bilinear { 4 } else { 1 };
+    for corner in 0..corners {
+        let column_index = wrap_texel(left as i32 + (corner & 1), texture.width as i32, wrap_u);
+        let row_index = wrap_texel(below as i32 + (corner >> 1), texture.height as i32, wrap_v);
+        let texel = read_texel(scene, texture, column_index, row_index);
+        // a + (b - a) t leaves equal neighbours exactly as they are.
+        row = if (corner & 1) == 0 { texel } else { row + (texel - row) * weight_x };
+        image = if corner <= 1 { row } else { image };
+    }
+    if bilinear { image + (row - image) * weight_y } else { image }
+}
+
+/// The texture at its own coordinates `uv` (finite), linear; alpha in lane 3. Trilinear between the two levels nearest to
+/// the detail's width, and the mean of its probes.
+#[inline]
+pub fn filter_texture(scene: &SceneView, texture: &Texture, uv: Vec2, detail: Detail) -> Vec4 {
+    let is_pattern = texture.format >= PATTERN_CHECKER;
+    // The finer of the two levels, and the share of the coarser.
+    let last = max_(texture.level_count as f32 - 1.0, 0.0);
+    let lambda = if detail.width > 1.0 { min_(log2_(detail.width), last) } else { 0.0 };
+    let finer = lambda.floor();
+    let blend = lambda - finer;
+    let levels = if blend > 0.0 { 2 } else { 1 };
+    let mut result = Vec4::ZERO;
+    for offset in 0..levels {
+        let index = finer as u32 + offset;
+        let level = if index == 0 { *texture } else { load_texture(scene, texture.first_level + (index - 1)) };
+        let mut sum = Vec4::ZERO;
+        for probe in 0..detail.probes {
+            let place = uv + detail.spacing * ((probe as f32 + 0.5) - 0.5 * detail.probes as f32);
+            let texel = if is_pattern {
+                sample_pattern(scene, &level, place, detail.width * rcp(texture.width as f32))
+            } else {
+                read_image(scene, &level, place)
+            };
+            sum = sum + texel;
+        }
+        let mean = if detail.probes == 1 { sum } else { sum * rcp(detail.probes as f32) };
+        result = if offset == 0 { mean } else { result + (mean - result) * blend };
+    }
+    result
+}
+
+/// The image at the surface's `uv`, read at the point alone; any uv is safe. Not for patterns.
 #[inline]
 pub fn sample_texture(scene: &SceneView, texture: &Texture, uv: Vec2) -> Vec4 {
-    let u = wrap_coordinate(finite_or_zero(uv.x * texture.scale_u + texture.offset_u), texture.wrap_u);
-    let v = wrap_coordinate(finite_or_zero(uv.y * texture.scale_v + texture.offset_v), texture.wrap_v);
-    let width = texture.width as i32;
-    let height = texture.height as i32;
-    // 0..size: at most 65,535, so the conversions below are in range.
-    let x = u * texture.width as f32;
-    let y = v * texture.height as f32;
-    if texture.magnify == MAGNIFY_BILINEAR {
-        let left = (x - 0.5).floor();
-        let below = (y - 0.5).floor();
-        let weight_x = (x - 0.5) - left;
-        let weight_y = (y - 0.5) - below;
-        let x0 = wrap_texel(left as i32, width, texture.wrap_u);
-        let x1 = wrap_texel(left as i32 + 1, width, texture.wrap_u);
-        let y0 = wrap_texel(below as i32, height, texture.wrap_v);
-        let y1 = wrap_texel(below as i32 + 1, height, texture.wrap_v);
-        let t00 = read_texel(scene, texture, x0, y0);
-        let t10 = read_texel(scene, texture, x1, y0);
-        let t01 = read_texel(scene, texture, x0, y1);
-        let t11 = read_texel(scene, texture, x1, y1);
-        // a + (b - a) t leaves equal neighbours exactly as they are.
-        let bottom = t00 + (t10 - t00) * weight_x;
-        let top = t01 + (t11 - t01) * weight_x;
-        return bottom + (top - bottom) * weight_y;
-    }
-    // MAGNIFY_NEAREST; the far edge itself belongs to the last texel.
-    let column = x.floor() as i32;
-    let row = y.floor() as i32;
-    let last_column = if column >= width { width - 1 } else { column };
-    let last_row = if row >= height { height - 1 } else { row };
-    read_texel(scene, texture, last_column, last_row)
+    read_image(scene, texture, texture_uv(texture, uv))
 }

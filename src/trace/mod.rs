@@ -8,5 +8,6 @@ pub mod ray;
 pub mod spawn;
 pub mod sphere;
 pub mod surface;
+pub mod tangent;
 pub mod traverse;
 pub mod triangle;

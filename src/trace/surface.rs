@@ -33,6 +33,9 @@ pub struct Surface {
     pub kind: u32,
     /// Bound of the distance between `position` and the surface as rays see it, world units.
     pub error: f32,
+    /// Width of the ray's cone here, and what it grows by per unit of distance.
+    pub cone_width: f32,
+    pub cone_spread: f32,
 }
 
 /// `v` made unit; `otherwise` if it is (as good as) zero.
@@ -79,10 +82,12 @@ fn sphere_surface(instance: &Instance, ray: &Ray, hit: &Hit) -> Surface {
         primitive: 0,
         kind: instance.kind,
         error: position_error(instance, Vec3::ONE),
+        cone_width: ray.cone_width + ray.cone_spread * hit.t,
+        cone_spread: ray.cone_spread,
     }
 }
 
-fn triangle_surface(scene: &SceneView, instance: &Instance, hit: &Hit) -> Surface {
+fn triangle_surface(scene: &SceneView, instance: &Instance, ray: &Ray, hit: &Hit) -> Surface {
     let face = load_face(scene, instance.first_face + hit.primitive);
     let p0 = load_vertex(scene, face.i0);
     let p1 = load_vertex(scene, face.i1);
@@ -114,6 +119,8 @@ fn triangle_surface(scene: &SceneView, instance: &Instance, hit: &Hit) -> Surfac
         primitive: hit.primitive,
         kind: instance.kind,
         error: position_error(instance, size),
+        cone_width: ray.cone_width + ray.cone_spread * hit.t,
+        cone_spread: ray.cone_spread,
     }
 }
 
@@ -142,6 +149,6 @@ pub fn surface_at(scene: &SceneView, ray: &Ray, hit: &Hit) -> Surface {
     if instance.kind == KIND_SPHERE {
         sphere_surface(&instance, ray, hit)
     } else {
-        triangle_surface(scene, &instance, hit)
+        triangle_surface(scene, &instance, ray, hit)
     }
 }

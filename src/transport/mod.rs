@@ -7,9 +7,9 @@
 
 pub mod area_light;
 pub mod emitter;
+pub mod faceted;
 pub mod film;
 pub mod generate;
-pub mod leaf;
 pub mod local;
 pub mod path;
 pub mod shade;
@@ -33,6 +33,8 @@ pub const DIMENSION_LEAF: u32 = 32;
 pub const DITHER_SURFACE: u32 = 0x1000_0000;
 pub const DITHER_BACKGROUND: u32 = 0x1000_0001;
 pub const DITHER_LIGHT: u32 = 0x2000_0000;
+/// Added to both for each further point at which one hit is shaded.
+pub const DITHER_CORNER: u32 = 0x0400_0000;
 
 /// Branches of a path: hashed into the child's path id.
 pub const LOBE_THROUGH: u32 = 1;

@@ -76,7 +76,7 @@ fn shade_emitter(
     if emitter.kind != EMITTER_LIGHT {
         u = sample_2d(key, DIMENSION_LIGHT);
     }
-    let lit = sample_emitter(scene, &emitter, surface, u);
+    let lit = sample_emitter(scene, &emitter, key, surface, u);
     let wo_local = to_local(frame, wo);
     let wi_local = to_local(frame, lit.wi);
     if spectrum_max(lit.radiance) <= 0.0 || !consistent(surface, wo, lit.wi, wo_local, wi_local) {

@@ -1,17 +1,88 @@
-//! Materials with their textures.
+//! The material of a point: its record with vertex colour and textures applied.
 
-use crate::layout::{INVALID, Material, SceneView, load_material, load_texture};
-use crate::shading::texture::sample_texture;
+use super::DIMENSION_LEAF;
+use crate::layout::{
+    Hit, MAX_LEAVES, MODEL_BLEND, Material, PARAMETER_BUMP, PARAMETER_NORMAL, SceneView, TEXTURES_MOST, load_material, load_texture,
+};
+use crate::shading::coordinate::texture_uv;
+use crate::shading::footprint::{cone_footprint, mapped_normal, raised_normal, texture_gradients};
+use crate::shading::math::{clamp_, div, max_};
+use crate::shading::parameter::{apply_parameter, channel_value};
+use crate::shading::sampling::{SampleKey, sample_1d};
+use crate::shading::texture::{filter_texture, texture_detail};
 use crate::trace::surface::Surface;
-use glam::Vec3;
+use crate::trace::tangent::gradients_at;
+use glam::{Vec2, Vec3};
 
-/// The surface's material with its texture and vertex colour applied.
-pub fn material_at(scene: &SceneView, surface: &Surface) -> Material {
+/// `bare` with its textures applied, at `surface`, found for `hit` along `direction` (unit); a normal or bump map turns
+/// `surface.normal`. One loop with one place that fetches, as each place is inlined and costs compile time.
+fn apply_textures(scene: &SceneView, bare: Material, direction: Vec3, hit: &Hit, surface: &mut Surface) -> Material {
+    let mut material = bare;
+    if material.texture_count == 0 {
+        return material;
+    }
+    let gradients = gradients_at(scene, surface, hit);
+    let footprint = cone_footprint(gradients, surface.normal_geometric, direction, surface.cone_width);
+    let count = if material.texture_count < TEXTURES_MOST { material.texture_count } else { TEXTURES_MOST };
+    for index in 0..count {
+        let texture = load_texture(scene, material.first_texture + index);
+        let detail = texture_detail(&texture, footprint);
+        let uv = texture_uv(&texture, surface.uv);
+        let raises = texture.parameter == PARAMETER_BUMP;
+        // Heights are compared half a texel, or half of what is covered, to each side.
+        let texels = max_(detail.width, 1.0);
+        let reach_u = div(0.5 * texels, texture.width as f32);
+        let reach_v = div(0.5 * texels, texture.height as f32);
+        let mut value = Vec3::ZERO;
+        let mut height_u = 0.0;
+        let mut height_v = 0.0;
+        // To the right, to the left, above, below; other textures are read once, on the spot.
+        let taps = if raises { 4 } else { 1 };
+        for tap in 0..taps {
+            let side = if (tap & 1) == 0 { 1.0 } else { -1.0 };
+            let reach = if tap < 2 { Vec2::new(reach_u * side, 0.0) } else { Vec2::new(0.0, reach_v * side) };
+            let place = if raises { uv + reach } else { uv };
+            value = channel_value(filter_texture(scene, &texture, place, detail), texture.channel);
+            height_u = if tap < 2 { height_u + value.x * side } else { height_u };
+            height_v = if tap < 2 { height_v } else { height_v + value.x * side };
+        }
+        if raises {
+            let own = texture_gradients(&texture, gradients);
+            let rise_u = div(height_u, 2.0 * reach_u) * texture.scale;
+            let rise_v = div(height_v, 2.0 * reach_v) * texture.scale;
+            surface.normal = raised_normal(surface.normal, own, rise_u, rise_v);
+        } else if texture.parameter == PARAMETER_NORMAL {
+            let own = texture_gradients(&texture, gradients);
+            surface.normal = mapped_normal(surface.normal, own, value, texture.scale);
+        } else {
+            material = apply_parameter(material, texture.parameter, value, texture.scale);
+        }
+    }
+    material
+}
+
+/// The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour. Of a blend it is
+/// one that is none, drawn by the weights, (1 - extra) of the first and extra of the second; `surface.material` names it.
+/// `key`: of the path, which meets one surface at most.
+pub fn material_at(scene: &SceneView, direction: Vec3, hit: &Hit, key: SampleKey, surface: &mut Surface) -> Material {
     let mut material = load_material(scene, surface.material);
-    material.color *= surface.color;
-    if material.color_texture != INVALID {
-        let texel = sample_texture(scene, &load_texture(scene, material.color_texture), surface.uv);
-        material.color *= Vec3::new(texel.x, texel.y, texel.z);
+    let mut u = 0.0;
+    if material.model == MODEL_BLEND {
+        u = sample_1d(key, DIMENSION_LEAF);
+    }
+    for level in 0..MAX_LEAVES {
+        material.color *= surface.color;
+        material = apply_textures(scene, material, direction, hit, surface);
+        // Bake lets no blend be deeper.
+        if material.model != MODEL_BLEND || level + 1 == MAX_LEAVES {
+            break;
+        }
+        let weight = clamp_(material.extra, 0.0, 1.0);
+        let second = u < weight;
+        // What is left of u is as random again.
+        u = if second { div(u, weight) } else { div(u - weight, 1.0 - weight) };
+        surface.material = if second { material.table + 1 } else { material.table };
+        material = load_material(scene, surface.material);
     }
     material
 }

@@ -79,9 +79,7 @@ pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, mat
     let thin = material.model == MODEL_THIN_DIELECTRIC;
     let reflectance =
         if thin { thin_reflectance(wo_local.z, material.eta.x) } else { fresnel_dielectric(wo_local.z, eta) };
-    let tint = material.color * reflectance;
-    let mirrored = Vec4::new(tint.x, tint.y, tint.z, reflectance);
-    push_branch(scene, path, surface, mirror_direction(surface, wo), mirrored, LOBE_MIRROR, queues);
+    push_branch(scene, path, surface, mirror_direction(surface, wo), Vec4::splat(reflectance), LOBE_MIRROR, queues);
     let weight = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
     if thin {
         push_branch(scene, path, surface, path.ray.direction, weight, LOBE_REFRACT, queues);

@@ -94,14 +94,15 @@ records! {
     Vertex { position, u, normal, v, color, _pad0 }
     Material {
         color, model, specular_color, exponent, k_a, k_d, k_s, k_r, eta, m0, k, m1, w0, w1, k_t, flags,
-        transmit_color, color_texture, absorption, table, emission, _pad0, m0_v, m1_v, exponent_v, extra,
+        transmit_color, first_texture, absorption, table, emission, texture_count, m0_v, m1_v, exponent_v, extra,
     }
     Light {
         position, kind, direction, attenuation, intensity, cos_outer, c, cos_inner, exponent, casts_shadow, _pad0,
         _pad1,
     }
     Texture {
-        width, height, first_word, format, wrap_u, wrap_v, magnify, _pad0, scale_u, scale_v, offset_u, offset_v,
+        width, height, first_word, format, wrap_u, wrap_v, magnify, level_count, scale_u, scale_v, offset_u, offset_v,
+        shear_u, shear_v, first_level, parameter, channel, scale, _pad0, _pad1,
     }
     Hit { t, b1, b2, instance, primitive, _pad0, _pad1, _pad2 }
     PathState {
@@ -109,7 +110,7 @@ records! {
     }
     ShadowRay { ray, contribution, slot, dither, _pad0, _pad1 }
     Camera {
-        eye, kind, right, scale_x, up, scale_y, forward, _pad0, lens_radius, focal_distance, _pad1, _pad2,
+        eye, kind, right, scale_x, up, scale_y, forward, pixel_size, lens_radius, focal_distance, _pad1, _pad2,
     }
     SceneHeader {
         camera, ambient, integrator, background_bottom, max_depth, background_top, min_weight, seed, sampling,
@@ -125,7 +126,7 @@ records! {
     }
     FilmSum { low, high }
     AovPixel { normal, albedo, depth, object, material, _pad0 }
-    Ray { origin, t_max, direction, skip_instance, skip_primitive, skip_inward, _pad0, _pad1 }
+    Ray { origin, t_max, direction, skip_instance, skip_primitive, skip_inward, cone_width, cone_spread }
     DispatchArguments { x, y, z }
     Control {
         extend, shadow, shade, done, chunk_level, chunk_first, chunk_count, shadow_pending, shadow_count,
@@ -168,7 +169,7 @@ constants! {
     INVALID
     CAMERA_PERSPECTIVE CAMERA_ORTHOGRAPHIC
     MAX_LEVELS STACK_SIZE
-    KIND_MESH KIND_SPHERE INSTANCE_NO_SHADOW INSTANCE_MIRRORED
+    KIND_MESH KIND_SPHERE INSTANCE_NO_SHADOW INSTANCE_MIRRORED INSTANCE_FLAT INSTANCE_GOURAUD
     INTEGRATOR_LOCAL INTEGRATOR_WHITTED INTEGRATOR_PATH
     SAMPLER_SOBOL SAMPLER_STRATIFIED SAMPLER_INDEPENDENT
     FILTER_BOX FILTER_TENT FILTER_TABLE FILTER_KNOTS
@@ -184,4 +185,8 @@ constants! {
     TEXEL_SRGB8 TEXEL_LINEAR8 TEXEL_FLOAT
     WRAP_REPEAT WRAP_CLAMP WRAP_MIRROR
     MAGNIFY_NEAREST MAGNIFY_BILINEAR
+    PATTERN_CHECKER PATTERN_NOISE PATTERN_GRADIENT PATTERN_ZONE_PLATE
+    PARAMETER_COLOR PARAMETER_SPECULAR_COLOR PARAMETER_EMISSION PARAMETER_ROUGHNESS PARAMETER_ROUGHNESS_U
+    PARAMETER_ROUGHNESS_V PARAMETER_METALLIC PARAMETER_OPACITY PARAMETER_MASK PARAMETER_WEIGHT PARAMETER_NORMAL
+    PARAMETER_BUMP CHANNEL_R CHANNEL_G CHANNEL_B CHANNEL_A CHANNEL_RGB TEXTURES_MOST
 }

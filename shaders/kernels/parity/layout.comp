@@ -170,6 +170,30 @@ void store_constants() {
     constants[93] = EMITTER_TEXTURED;
     constants[94] = EMITTER_WORDS;
     constants[95] = ENVIRONMENT_MAP_WORDS;
+    constants[96] = INSTANCE_FLAT;
+    constants[97] = INSTANCE_GOURAUD;
+    constants[98] = PATTERN_CHECKER;
+    constants[99] = PATTERN_NOISE;
+    constants[100] = PATTERN_GRADIENT;
+    constants[101] = PATTERN_ZONE_PLATE;
+    constants[102] = PARAMETER_COLOR;
+    constants[103] = PARAMETER_SPECULAR_COLOR;
+    constants[104] = PARAMETER_EMISSION;
+    constants[105] = PARAMETER_ROUGHNESS;
+    constants[106] = PARAMETER_ROUGHNESS_U;
+    constants[107] = PARAMETER_ROUGHNESS_V;
+    constants[108] = PARAMETER_METALLIC;
+    constants[109] = PARAMETER_OPACITY;
+    constants[110] = PARAMETER_MASK;
+    constants[111] = PARAMETER_WEIGHT;
+    constants[112] = PARAMETER_NORMAL;
+    constants[113] = PARAMETER_BUMP;
+    constants[114] = CHANNEL_R;
+    constants[115] = CHANNEL_G;
+    constants[116] = CHANNEL_B;
+    constants[117] = CHANNEL_A;
+    constants[118] = CHANNEL_RGB;
+    constants[119] = TEXTURES_MOST;
 }
 
 void main() {

@@ -30,7 +30,8 @@ Material material(uint model) {
     m.k_t = 0.0;
     m.flags = argument_u(12u);
     m.transmit_color = vec3(0.0);
-    m.color_texture = 0u;
+    m.first_texture = 0u;
+    m.texture_count = 0u;
     m.absorption = vec3(0.0);
     m.emission = vec3(0.0);
     m.table = 64u;

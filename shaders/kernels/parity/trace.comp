@@ -20,6 +20,8 @@ Surface surface() {
     s.error = argument(6u);
     s.instance = 7u;
     s.primitive = argument_u(7u);
+    s.cone_width = 0.25;
+    s.cone_spread = 0.125;
     return s;
 }
 

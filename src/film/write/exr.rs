@@ -41,16 +41,29 @@ pub fn write(film: &Film, wanted: &[Aov], out: &mut dyn Write) -> io::Result<()>
     attributes.other.insert(text("filmHash"), AttributeValue::Text(text(value("Film-Hash"))));
     let frame = IntegerBounds::from_dimensions(Vec2(spec.width as usize, spec.height as usize));
 
-    let encoding = Encoding {
-        compression: Compression::ZIP16,
-        blocks: exr::image::Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
-    };
     let size = Vec2(image.width as usize, image.height as usize);
-    let layer = Layer::new(size, attributes, encoding, AnyChannels::sort(channels.into_iter().collect()));
+    let layer = Layer::new(size, attributes, ENCODING, AnyChannels::sort(channels.into_iter().collect()));
     let mut picture = Image::from_layer(layer);
     picture.attributes = ImageAttributes::new(frame);
+    write_picture(&picture, out)
+}
 
+/// R, G, B of an image as f32, whatever their range.
+pub fn write_linear(image: &crate::film::Image, out: &mut dyn Write) -> io::Result<()> {
+    let plane = |lane: usize| FlatSamples::F32(image.pixels.iter().map(|pixel| pixel[lane]).collect());
+    let channels = ["R", "G", "B"].iter().enumerate().map(|(lane, name)| AnyChannel::new(*name, plane(lane)));
+    let size = Vec2(image.width as usize, image.height as usize);
+    let layer = Layer::new(size, LayerAttributes::default(), ENCODING, AnyChannels::sort(channels.collect()));
+    write_picture(&Image::from_layer(layer), out)
+}
+
+const ENCODING: Encoding = Encoding {
+    compression: Compression::ZIP16,
+    blocks: exr::image::Blocks::ScanLines,
+    line_order: LineOrder::Increasing,
+};
+
+fn write_picture(picture: &Image<Layer<AnyChannels<FlatSamples>>>, out: &mut dyn Write) -> io::Result<()> {
     // The offset table is filled in last: it needs a seekable place, which a stream is not.
     let mut bytes = Cursor::new(Vec::new());
     picture.write().to_buffered(&mut bytes).map_err(|error| match error {

@@ -4,6 +4,7 @@ mod exr;
 mod hdr;
 mod png;
 
+pub use self::exr::write_linear;
 pub use hdr::rgbe;
 pub use png::write_rgb8;
 

@@ -8,7 +8,9 @@ use super::plan::QueuePlan;
 use super::record::Recorder;
 use super::scene::SceneBuffers;
 use crate::bake::SceneData;
-use crate::layout::{Batch, Control, DispatchArguments, EMITTER_TEXTURED, KIND_SPHERE};
+use crate::layout::{
+    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, KIND_SPHERE,
+};
 use crate::shaders;
 use glam::Vec3;
 use std::mem::offset_of;
@@ -46,8 +48,10 @@ const NAMES: Stages<&str> = Stages {
 };
 
 /// Specialisation constants that say what the scene uses (`shaders/kernels/bindings.glsl`).
-fn scene_constants(data: &SceneData) -> [(u32, u32); 12] {
+fn scene_constants(data: &SceneData) -> [(u32, u32); 14] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
+    let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
+    let textures = data.materials.iter().any(|material| material.texture_count > 0);
     let models = data.materials.iter().fold(0, |mask, material| mask | 1 << material.model);
     [
         (5, data.stack_depth.max(1)),
@@ -63,6 +67,8 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 12] {
         // Textures may cut holes.
         (15, u32::from(!data.textures.is_empty() || data.materials.iter().any(|material| material.k_t > 0.0))),
         (16, u32::from(data.materials.iter().any(|material| material.absorption != Vec3::ZERO))),
+        (17, u32::from(facets)),
+        (18, u32::from(textures)),
     ]
 }
 

@@ -1,6 +1,6 @@
 //! Pictures as textures: PNG, JPEG, Radiance HDR and WebP through `image`, OpenEXR through `exr`.
 
-use crate::scene::{Location, SceneError, Texture, TextureData, Wrap};
+use crate::scene::{Location, SceneError, Texture, TextureData};
 use image::{DynamicImage, ImageDecoder, ImageReader};
 use std::io::Cursor;
 use std::path::Path;
@@ -36,17 +36,7 @@ pub fn texture_from_bytes(bytes: &[u8], name: &Path, space: ColorSpace) -> Resul
         true => decode_exr(bytes).map_err(bad)?,
         false => decode(bytes, space).map_err(bad)?,
     };
-    Ok(Texture {
-        name: name.display().to_string(),
-        width,
-        height,
-        data,
-        wrap_u: Wrap::Repeat,
-        wrap_v: Wrap::Repeat,
-        bilinear: true,
-        scale: [1.0, 1.0],
-        offset: [0.0, 0.0],
-    })
+    Ok(Texture::new(name.display().to_string(), width, height, data))
 }
 
 fn decode(bytes: &[u8], space: ColorSpace) -> Result<(u32, u32, TextureData), String> {

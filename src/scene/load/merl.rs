@@ -24,7 +24,10 @@ pub fn read_merl(file: &Path) -> Result<Arc<Vec<f32>>, SceneError> {
     let (head, body) = bytes.split_at(12);
     let sizes: Vec<u32> = head.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
     if sizes != SIZES {
-        return Err(bad(format!("a MERL table is of 90 x 90 x 180 cells, found {} x {} x {}", sizes[0], sizes[1], sizes[2])));
+        return Err(bad(format!(
+            "a MERL table is of 90 x 90 x 180 cells, found {} x {} x {}",
+            sizes[0], sizes[1], sizes[2]
+        )));
     }
     let value = |(index, word): (usize, &[u8; 8])| {
         let value = f64::from_le_bytes(*word) * SCALES[index / plane];

@@ -1,10 +1,12 @@
 //! Scene files: one file or folder per format.
 
 mod bounds;
+pub mod builtin;
 pub mod gltf;
 pub mod image;
 mod merl;
 mod meter;
+pub mod mitsuba;
 pub mod obj;
 pub mod ply;
 mod polygon;
@@ -22,9 +24,28 @@ use std::path::Path;
 /// Bytes of a scene on standard input at most: text of a size that nobody writes, so an endless stream ends.
 const STDIN_MAX: u64 = 64 << 20;
 
-/// Loads the scene in `path`, its format told by the extension: `.toml`, `.obj`, `.gltf`, `.glb`, `.ply`; `-` is TOML on
-/// standard input. What the scene lacks to be a picture (a mesh has no camera) is staged.
+/// Loads the scene in `path`, its format told by the extension: `.toml`, `.obj`, `.gltf`, `.glb`, `.ply`, `.xml` (Mitsuba);
+/// `-` is TOML on standard input, and `NAME:SIZE` may be a built-in scene (`builtin`). What the scene lacks to be a picture
+/// (a mesh has no camera) is staged.
 pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
+    load_with(path, overrides, &[])
+}
+
+/// As `load`, with values for the parameters of a Mitsuba scene; other formats have none.
+pub fn load_with(path: &Path, overrides: &[Override], defines: &[(String, String)]) -> Result<Scene, SceneError> {
+    if extension(path) == "xml" {
+        let mut scene = mitsuba::load(path, defines)?;
+        toml::override_film(&mut scene, overrides)?;
+        if staging::lacks_camera(&scene) {
+            staging::stage(&mut scene);
+        }
+        toml::override_settings(&mut scene, overrides)?;
+        return Ok(scene);
+    }
+    if let Some((name, _)) = defines.first() {
+        let message = format!("-D {name}: only Mitsuba scenes (.xml) have parameters; --set changes keys of others");
+        return Err(SceneError::bad(Location::file(path), message));
+    }
     if path == Path::new("-") {
         let name = Path::new("<stdin>");
         let mut bytes = Vec::new();
@@ -35,6 +56,12 @@ pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
             return Err(SceneError::bad(Location::file(name), message));
         }
         return toml::scene_from_text(name, text::utf8(name, bytes)?, overrides);
+    }
+    if let Some(scene) = builtin::load(path) {
+        let mut scene = scene?;
+        toml::override_film(&mut scene, overrides)?;
+        toml::override_settings(&mut scene, overrides)?;
+        return Ok(scene);
     }
     if extension(path) == "toml" {
         return toml::scene_from_text(path, text::utf8(path, text::read_bytes(path)?)?, overrides);
@@ -55,7 +82,7 @@ fn load_file(path: &Path) -> Result<Scene, SceneError> {
         "ply" => ply::load(path),
         found => {
             let found = if found.is_empty() { "no extension".to_owned() } else { format!(".{found}") };
-            let message = format!("scene files are .toml, .obj, .gltf, .glb or .ply, found {found}");
+            let message = format!("scene files are .toml, .obj, .gltf, .glb, .ply or .xml, found {found}");
             Err(SceneError::bad(Location::file(path), message))
         }
     }

@@ -24,6 +24,8 @@ impl HeightGrid {
                 texels.iter().map(|t| luminance(f32::from(t[0]), f32::from(t[1]), f32::from(t[2])) / 255.0).collect()
             }
             TextureData::Float(texels) => texels.iter().map(|t| luminance(t[0], t[1], t[2])).collect(),
+            // No texels: `height_field` says that their number is wrong.
+            TextureData::Pattern(_) => Vec::new(),
         };
         Self { columns: texture.width, rows: texture.height, heights }
     }

@@ -5,6 +5,7 @@ pub mod math;
 pub mod models;
 pub mod path;
 pub mod shading;
+pub mod texture;
 pub mod trace;
 pub mod warp;
 
@@ -32,8 +33,16 @@ pub struct Family {
 }
 
 /// All of them.
-pub static FAMILIES: &[Family] =
-    &[math::FAMILY, film::FAMILY, shading::FAMILY, models::FAMILY, warp::FAMILY, trace::FAMILY, path::FAMILY];
+pub static FAMILIES: &[Family] = &[
+    math::FAMILY,
+    film::FAMILY,
+    shading::FAMILY,
+    models::FAMILY,
+    warp::FAMILY,
+    trace::FAMILY,
+    path::FAMILY,
+    texture::FAMILY,
+];
 
 /// The arguments of one evaluation, read as the harness in GLSL reads them.
 pub struct In<'a>(&'a [u32]);

@@ -9,7 +9,8 @@ use crate::layout::{
     MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneHeader, SceneView,
 };
 use crate::shading::material::{
-  albedo_material, ambient_material, emission_material, own_weight, eval_material, is_delta, mirror_weight, pdf_material, sample_material,
+    albedo_material, ambient_material, emission_material, eval_material, is_delta, mirror_weight, own_weight,
+    pdf_material, sample_material,
 };
 use crate::shading::sampling::{hash_u32, unit_float};
 use crate::verify::inputs::Domain::{self, Below, Direction, Range};

@@ -71,6 +71,8 @@ fn surface(normal: Vec3) -> Surface {
         primitive: 0,
         kind: KIND_MESH,
         error: 0.0,
+        cone_width: 0.0,
+        cone_spread: 0.0,
     }
 }
 

@@ -58,6 +58,8 @@ fn surface(i: &In) -> Surface {
         primitive: i.u(7),
         kind: KIND_MESH,
         error: i.f(6),
+        cone_width: 0.25,
+        cone_spread: 0.125,
     }
 }
 

@@ -2,23 +2,22 @@
 
 use super::Failure;
 use super::accessor::Accessors;
-use super::texture::Coordinates;
 use crate::scene::load::polygon::unroll_strip;
 use crate::scene::{Mesh, shape};
-use glam::{DVec2, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index};
 use std::collections::BTreeSet;
 
 /// Reads a primitive. None: it makes no triangles (points, lines, or nothing at all).
-/// `place` names it; `weights` are those of its morph targets; `coordinates` say which uvs its texture wants.
+/// `place` names it; `weights` are those of its morph targets; `set` says which uvs its textures want.
 pub(super) fn read(
     accessors: &Accessors,
     primitive: &Primitive,
     place: &str,
     weights: &[f32],
-    coordinates: Option<Coordinates>,
+    set: Option<u32>,
     notes: &mut BTreeSet<String>,
 ) -> Result<Option<Mesh>, Failure> {
     let Checked::Valid(mode) = primitive.mode else {
@@ -56,13 +55,14 @@ pub(super) fn read(
         let channel = |c: f32| if c > 0.0 { c.min(1e6) } else { 0.0 };
         mesh.colors = colors.iter().map(|c| Vec3::new(channel(c[0]), channel(c[1]), channel(c[2]))).collect();
     }
-    let set = coordinates.map_or(0, |c| c.set);
+    let wanted = set.is_some();
+    let set = set.unwrap_or(0);
     if let Some(index) = attribute(Semantic::TexCoords(set)) {
         let name = format!("TEXCOORD_{set}");
         let uvs = accessors.floats::<2>(index, &user(&name), None)?;
         same_count(uvs.len(), &name)?;
-        mesh.uvs = uvs.into_iter().map(|uv| place_uv(uv, coordinates)).collect();
-    } else if coordinates.is_some() {
+        mesh.uvs = uvs.into_iter().map(place_uv).collect();
+    } else if wanted {
         notes.insert(format!("{place} has a texture but no TEXCOORD_{set}"));
     }
     morph(accessors, primitive, place, weights, &mut mesh)?;
@@ -90,12 +90,8 @@ fn vectors(accessors: &Accessors, index: Index<Accessor>, user: &str) -> Result<
 }
 
 /// glTF's v points down the image, ours up.
-fn place_uv(uv: [f32; 2], coordinates: Option<Coordinates>) -> Vec2 {
-    let mut uv = DVec2::from_array(uv.map(f64::from));
-    if let Some(coordinates) = coordinates {
-        uv = coordinates.transform.transform_point2(uv);
-    }
-    let uv = Vec2::new(uv.x as f32, (1.0 - uv.y) as f32);
+fn place_uv([u, v]: [f32; 2]) -> Vec2 {
+    let uv = Vec2::new(u, (1.0 - f64::from(v)) as f32);
     if uv.is_finite() { uv } else { Vec2::ZERO }
 }
 

@@ -5,6 +5,7 @@
 //! against the bytes that are there. Animations and skins are ignored; morph targets have their default weights.
 
 mod accessor;
+mod glossy;
 mod material;
 mod mesh;
 mod node;
@@ -19,7 +20,7 @@ use gltf::json::Root;
 use source::Buffers;
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
-use texture::{Coordinates, Textures};
+use texture::Textures;
 
 /// Extensions that are read.
 const KNOWN: [&str; 11] = [
@@ -114,7 +115,8 @@ struct Loader<'a> {
     /// Warnings, each once.
     notes: BTreeSet<String>,
     has_camera: bool,
-    materials: HashMap<Option<usize>, (MaterialId, Option<Coordinates>)>,
+    /// Materials by index, and the set of texture coordinates each wants.
+    materials: HashMap<Option<usize>, (MaterialId, Option<u32>)>,
     /// Meshes by index and morph weights.
     parts: HashMap<(usize, Vec<u32>), Vec<Part>>,
     vertices: usize,
@@ -209,9 +211,9 @@ impl Loader<'_> {
         let mut parts = Vec::new();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let place = format!("meshes[{index}].primitives[{i}]");
-            let (material, coordinates) = self.material(primitive.material.map(|m| m.value()), &place)?;
+            let (material, set) = self.material(primitive.material.map(|m| m.value()), &place)?;
             let accessors = Accessors { root, buffers: self.buffers };
-            let read = mesh::read(&accessors, primitive, &place, weights, coordinates, &mut self.notes)?;
+            let read = mesh::read(&accessors, primitive, &place, weights, set, &mut self.notes)?;
             let Some(mut read) = read else { continue };
             self.vertices += read.positions.len() + read.triangles.len();
             if self.vertices > VERTICES_MAX {
@@ -226,11 +228,11 @@ impl Loader<'_> {
     }
 
     /// Material `index`, or the default one.
-    fn material(&mut self, index: Option<usize>, user: &str) -> Result<(MaterialId, Option<Coordinates>), Failure> {
+    fn material(&mut self, index: Option<usize>, user: &str) -> Result<(MaterialId, Option<u32>), Failure> {
         if let Some(made) = self.materials.get(&index) {
             return Ok(*made);
         }
-        let (material, coordinates) = match index {
+        let (material, set) = match index {
             None => (Material::grey("default"), None),
             Some(i) => {
                 let Some(source) = self.root.materials.get(i) else {
@@ -238,11 +240,11 @@ impl Loader<'_> {
                     return Err(Failure::new(user, message));
                 };
                 let converted = material::convert(source, i, &mut self.textures, &mut self.scene, &mut self.notes)?;
-                (converted.material, converted.coordinates)
+                (converted.material, converted.set)
             }
         };
         self.scene.materials.push(material);
-        let made = (MaterialId(self.scene.materials.len() as u32 - 1), coordinates);
+        let made = (MaterialId(self.scene.materials.len() as u32 - 1), set);
         self.materials.insert(index, made);
         Ok(made)
     }

@@ -2,9 +2,9 @@
 
 use super::Failure;
 use super::source::{Buffers, file_of, read_uri};
-use crate::scene::load::image::{ColorSpace, srgb_to_linear, texture_from_bytes};
-use crate::scene::{Scene, SceneError, Texture, TextureData, TextureId, Wrap};
-use glam::{DAffine2, DVec2};
+use crate::scene::load::image::{ColorSpace, texture_from_bytes};
+use crate::scene::{SceneError, Texture, TextureData, Wrap};
+use gltf::json::extensions::texture::TextureTransform;
 use gltf::json::texture::{Info, MagFilter, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{Image, Root};
@@ -19,59 +19,37 @@ pub(super) struct Textures<'a> {
     /// The glTF itself, for messages.
     pub file: &'a Path,
     pictures: HashMap<(usize, bool), Texture>,
-    means: HashMap<(usize, bool), [f64; 4]>,
-    made: HashMap<(usize, [u8; 3]), TextureId>,
-}
-
-/// How a material uses a texture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Use {
-    pub texture: TextureId,
-    pub coordinates: Coordinates,
-}
-
-/// Which uvs, and what happens to them before the look-up (KHR_texture_transform).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Coordinates {
-    pub set: u32,
-    pub transform: DAffine2,
+    opaque: HashMap<usize, bool>,
 }
 
 impl<'a> Textures<'a> {
     pub fn new(root: &'a Root, buffers: &'a Buffers<'a>, folder: &'a Path, file: &'a Path) -> Self {
-        let (pictures, means, made) = (HashMap::new(), HashMap::new(), HashMap::new());
-        Self { root, buffers, folder, file, pictures, means, made }
+        Self { root, buffers, folder, file, pictures: HashMap::new(), opaque: HashMap::new() }
     }
 
-    /// The colour texture that `info` asks for, added to `scene` unless it is there.
-    pub fn color(&mut self, scene: &mut Scene, info: &Info, place: &str) -> Result<Use, Failure> {
+    /// The texture that `info` asks for, as it is to be laid on.
+    pub fn texture(&mut self, info: &Info, space: ColorSpace, place: &str) -> Result<Texture, Failure> {
         let (image, wraps, nearest) = self.resolve(info, place)?;
-        let key = (image, [wrap_code(wraps[0]), wrap_code(wraps[1]), u8::from(nearest)]);
-        let texture = match self.made.get(&key) {
-            Some(id) => *id,
-            None => {
-                let mut texture = self.picture(image, ColorSpace::Srgb)?.clone();
-                [texture.wrap_u, texture.wrap_v] = wraps;
-                texture.bilinear = !nearest;
-                scene.textures.push(texture);
-                let id = TextureId(scene.textures.len() as u32 - 1);
-                self.made.insert(key, id);
-                id
-            }
-        };
-        Ok(Use { texture, coordinates: coordinates(info) })
+        let mut texture = self.picture(image, space)?.clone();
+        [texture.wrap_u, texture.wrap_v] = wraps;
+        texture.bilinear = !nearest;
+        lay_on(&mut texture, info);
+        Ok(texture)
     }
 
-    /// The mean of all texels, linear RGBA, for what our models have no texture for.
-    pub fn mean(&mut self, info: &Info, space: ColorSpace, place: &str) -> Result<[f64; 4], Failure> {
+    /// Whether no texel of the picture lets anything through.
+    pub fn is_opaque(&mut self, info: &Info, place: &str) -> Result<bool, Failure> {
         let (image, ..) = self.resolve(info, place)?;
-        let key = (image, space == ColorSpace::Srgb);
-        if let Some(mean) = self.means.get(&key) {
-            return Ok(*mean);
+        if let Some(opaque) = self.opaque.get(&image) {
+            return Ok(*opaque);
         }
-        let mean = mean_of(&self.picture(image, space)?.data);
-        self.means.insert(key, mean);
-        Ok(mean)
+        let opaque = match &self.picture(image, ColorSpace::Srgb)?.data {
+            TextureData::Srgb8(texels) | TextureData::Linear8(texels) => texels.iter().all(|texel| texel[3] == 255),
+            TextureData::Float(texels) => texels.iter().all(|texel| texel[3] >= 1.0),
+            TextureData::Pattern(_) => true,
+        };
+        self.opaque.insert(image, opaque);
+        Ok(opaque)
     }
 
     /// Image index, wrap modes, and whether the nearest texel is wanted.
@@ -135,53 +113,29 @@ impl<'a> Textures<'a> {
     }
 }
 
-fn wrap_code(wrap: Wrap) -> u8 {
-    match wrap {
-        Wrap::Repeat => 0,
-        Wrap::Clamp => 1,
-        Wrap::Mirror => 2,
-    }
+/// Set of texture coordinates that `info` uses.
+pub(super) fn coordinate_set(info: &Info) -> u32 {
+    transform_of(info).and_then(|t| t.tex_coord).unwrap_or(info.tex_coord)
 }
 
-/// Offset times rotation times scale, in glTF's uvs, whose v points down the image. A positive rotation turns u towards -v:
-/// the matrix printed in the extension has the other sign, a known slip (KhronosGroup/glTF issue 1563).
-fn coordinates(info: &Info) -> Coordinates {
-    let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
-    let Some(t) = transform else {
-        return Coordinates { set: info.tex_coord, transform: DAffine2::IDENTITY };
-    };
+fn transform_of(info: &Info) -> Option<&TextureTransform> {
+    info.extensions.as_ref()?.texture_transform.as_ref()
+}
+
+/// KHR_texture_transform: offset times rotation times scale, in glTF's uvs, whose v points down the image. A positive
+/// rotation turns u towards -v: the matrix printed in the extension has the other sign, a known slip (KhronosGroup/glTF
+/// issue 1563). Ours has v' = 1 - v on both sides of it.
+fn lay_on(texture: &mut Texture, info: &Info) {
+    let Some(t) = transform_of(info) else { return };
     let (s, c) = (libm::sin(f64::from(t.rotation.0)), libm::cos(f64::from(t.rotation.0)));
     let [sx, sy] = t.scale.0.map(f64::from);
-    let matrix2 = glam::DMat2::from_cols(DVec2::new(c * sx, -s * sx), DVec2::new(s * sy, c * sy));
-    let translation = DVec2::from_array(t.offset.0.map(f64::from));
-    let transform = DAffine2 { matrix2, translation };
-    let transform = if transform.is_finite() { transform } else { DAffine2::IDENTITY };
-    Coordinates { set: t.tex_coord.unwrap_or(info.tex_coord), transform }
-}
-
-fn mean_of(data: &TextureData) -> [f64; 4] {
-    // Codes are counted first: 256 conversions a channel instead of one a texel.
-    let of_codes = |texels: &[[u8; 4]], encoded: bool| {
-        let mut counts = [[0u64; 256]; 4];
-        for texel in texels {
-            for lane in 0..4 {
-                counts[lane][usize::from(texel[lane])] += 1;
-            }
-        }
-        std::array::from_fn(|lane| {
-            let value = |code: usize| {
-                let v = code as f64 / 255.0;
-                if encoded && lane < 3 { srgb_to_linear(v) } else { v }
-            };
-            let sum: f64 = counts[lane].iter().enumerate().map(|(code, n)| value(code) * *n as f64).sum();
-            sum / texels.len() as f64
-        })
-    };
-    match data {
-        TextureData::Srgb8(texels) => of_codes(texels, true),
-        TextureData::Linear8(texels) => of_codes(texels, false),
-        TextureData::Float(texels) => {
-            std::array::from_fn(|lane| texels.iter().map(|t| f64::from(t[lane])).sum::<f64>() / texels.len() as f64)
-        }
+    let [x, y] = t.offset.0.map(f64::from);
+    // (u', v') = (c sx u + s sy v + x, -s sx u + c sy v + y)
+    let scale = [c * sx, c * sy];
+    let shear = [-s * sy, s * sx];
+    let offset = [s * sy + x, 1.0 - c * sy - y];
+    if [scale, shear, offset].as_flattened().iter().all(|v| v.is_finite()) {
+        let single = |pair: [f64; 2]| pair.map(|v| v as f32);
+        (texture.scale, texture.shear, texture.offset) = (single(scale), single(shear), single(offset));
     }
 }

@@ -77,9 +77,25 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         transform: Transform::default(),
         material,
         casts_shadow: None,
+        shading: None,
     });
     scene.meshes.push(mesh);
     Ok(scene)
+}
+
+/// Reads the mesh in the file `path` and no materials; without normals if it has none.
+pub fn read_mesh(path: &Path) -> Result<Mesh, SceneError> {
+    let mut scene = bare_scene(path);
+    let bytes = read_bytes(path)?;
+    let text = String::from_utf8_lossy(&bytes);
+    let mut reader = Reader::new(path, &mut scene);
+    for statement in statements(path, &text) {
+        if !matches!(statement.keyword(), "mtllib" | "usemtl") {
+            reader.read(&statement)?;
+        }
+    }
+    reader.smooth = false;
+    reader.finish().map(|(mesh, _)| mesh)
 }
 
 /// What has been read so far.

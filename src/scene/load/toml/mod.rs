@@ -9,6 +9,7 @@ mod format;
 mod keys;
 mod light;
 mod material;
+mod material_format;
 mod metal;
 mod names;
 mod object;
@@ -21,7 +22,9 @@ mod table;
 mod texture;
 
 pub(super) use keys::LARGEST;
+pub use metal::{METALS, Metal};
 pub use overrides::Override;
+pub use reader::nearest;
 
 use super::staging::bare_scene;
 use crate::scene::{IntensityUnit, Rgb, Scene, SceneError};

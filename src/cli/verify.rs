@@ -1,0 +1,203 @@
+//! `gonio verify`: proofs, as one table.
+
+use super::setup::{BackendFlags, bake_scene, film_of};
+use super::{EXIT_DIFFERS, Usage};
+use crate::film::read::read_picture;
+use crate::film::{Film, FilmError, Image, OutputFile, Rect, write};
+use crate::render::{Job, Watch};
+use crate::scene::{Scene, load};
+use crate::verify::mitsuba::{
+    ACCEPTED_MIN, Case, DisplayTest, Reference, display_test, find_cases, reduce, samples_for, show_z, z_test,
+};
+use crate::verify::report::{Outcome, Row, all_proved, table};
+use anyhow::Context;
+use clap::Args;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Side of a block of the documentation's pictures that is compared as one pixel: below it, filters and JPEG differ.
+const BLOCK: u32 = 4;
+/// Samples of each pixel of a documentation picture.
+const DISPLAY_SAMPLES: u32 = 16;
+
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  gonio verify --mitsuba ../mitsuba-data                  every scene that has a reference
+  gonio verify --mitsuba ../mitsuba-data --only envmap    those whose names say envmap
+  gonio verify --mitsuba ../mitsuba-data --keep out       with pictures of what failed
+
+Exit code 0 if everything that could be tried is proved, 1 if not.")]
+pub struct VerifyArgs {
+    /// Compare with the references of Mitsuba 3 below this folder: its z-test where a variance is known, displayed
+    /// pictures where there is a JPEG.
+    #[arg(long, value_name = "DIR")]
+    mitsuba: Option<PathBuf>,
+    /// Only what has one of these words in its name; may be repeated.
+    #[arg(long, value_name = "WORD")]
+    only: Vec<String>,
+    /// Samples a pixel, instead of what each test asks for.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16_777_216))]
+    spp: Option<u32>,
+    /// Keep image, reference and z map of what failed in this folder.
+    #[arg(long, value_name = "DIR")]
+    keep: Option<PathBuf>,
+    /// Print the rows as JSON.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    backend: BackendFlags,
+}
+
+pub fn run(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
+    let Some(folder) = &args.mitsuba else {
+        return Err(Usage("nothing to verify: give --mitsuba DIR".to_owned()).into());
+    };
+    let cases = find_cases(folder).with_context(|| folder.display().to_string())?;
+    let wanted = |case: &&Case| {
+        let name = case.scene.display().to_string();
+        args.only.is_empty() || args.only.iter().any(|word| name.contains(word))
+    };
+    let cases: Vec<&Case> = cases.iter().filter(wanted).collect();
+    if cases.is_empty() {
+        return Err(Usage(format!("no scene with a reference in {}", folder.display())).into());
+    }
+    if let Some(keep) = &args.keep {
+        std::fs::create_dir_all(keep).with_context(|| keep.display().to_string())?;
+    }
+    let mut rows = Vec::new();
+    for case in cases {
+        let row = run_case(args, folder, case)?;
+        log::info!("{}: {}", row.subject, row.finding);
+        rows.push(row);
+    }
+    let text = if args.json { serde_json::to_string_pretty(&rows)? + "\n" } else { table(&rows) };
+    std::io::stdout().write_all(text.as_bytes()).context("cannot write standard output")?;
+    Ok(if all_proved(&rows) { ExitCode::SUCCESS } else { ExitCode::from(EXIT_DIFFERS) })
+}
+
+fn run_case(args: &VerifyArgs, folder: &Path, case: &Case) -> anyhow::Result<Row> {
+    let start = Instant::now();
+    let subject = case.scene.strip_prefix(folder).unwrap_or(&case.scene).display().to_string();
+    let proof = match case.reference {
+        Reference::Statistics { .. } => "mitsuba z-test",
+        Reference::Displayed(_) => "mitsuba picture",
+    };
+    let mut row = Row {
+        proof,
+        subject,
+        backend: String::new(),
+        outcome: Outcome::Skipped,
+        finding: String::new(),
+        measures: serde_json::Value::Null,
+        seconds: 0.0,
+    };
+    let mut scene = match load::load(&case.scene, &[]) {
+        Ok(scene) => scene,
+        Err(error) if error.to_string().contains(load::mitsuba::NO_MEDIA) => {
+            row.finding = "participating media".to_owned();
+            return Ok(row);
+        }
+        Err(error) => return Err(error.into()),
+    };
+    match &case.reference {
+        Reference::Statistics { mean, variance } => {
+            let (mean, variance) = (read_picture(mean)?.image, read_picture(variance)?.image);
+            check_size(&case.scene, &scene, &mean)?;
+            check_size(&case.scene, &scene, &variance)?;
+            let samples = args.spp.unwrap_or_else(|| samples_for(mean.width, mean.height));
+            let film = render(args, &scene, samples, &mut row)?;
+            let image = film.resolve();
+            let test = z_test(&image, &mean, &variance, samples);
+            row.outcome = if test.passes() { Outcome::Proved } else { Outcome::Unproved };
+            let [x, y] = test.worst_at;
+            row.finding = format!(
+                "{:.3} % of values accepted, {:.2} wanted; brightness {:.4}; worst z {:.1} at {x},{y}",
+                100.0 * test.accepted,
+                100.0 * ACCEPTED_MIN,
+                test.brightness,
+                test.worst
+            );
+            row.measures = serde_json::json!({
+                "accepted": test.accepted, "accepted_min": ACCEPTED_MIN, "brightness": test.brightness,
+                "worst_z": test.worst, "worst_at": test.worst_at, "samples": samples, "film_hash": film.hash().to_string(),
+            });
+            if !test.passes()
+                && let Some(keep) = &args.keep
+            {
+                let name = case.scene.file_stem().unwrap_or_default().to_string_lossy();
+                keep_exr(&keep.join(format!("{name}.exr")), &image)?;
+                keep_exr(&keep.join(format!("{name}-reference.exr")), &mean)?;
+                keep_exr(&keep.join(format!("{name}-z.exr")), &test.z)?;
+                let mut file = OutputFile::open(&keep.join(format!("{name}-z.png")))?;
+                let written = write::write_rgb8(image.width, image.height, &show_z(&test), &mut file);
+                written.map_err(|e| FilmError::write(file.path(), e))?;
+                file.commit()?;
+            }
+        }
+        Reference::Displayed(path) => {
+            let reference = read_picture(path)?.image;
+            check_size(&case.scene, &scene, &reference)?;
+            (scene.film.width, scene.film.height) = (reference.width / BLOCK, reference.height / BLOCK);
+            let film = render(args, &scene, args.spp.unwrap_or(DISPLAY_SAMPLES * BLOCK * BLOCK), &mut row)?;
+            let (image, reference) = (film.resolve(), reduce(&reference, BLOCK));
+            let test = display_test(&image, &reference);
+            row.outcome = if test.passes() { Outcome::Proved } else { Outcome::Unproved };
+            let limits = DisplayTest::LIMITS;
+            row.finding = format!(
+                "means within {:.2} codes, {} wanted; mean difference {:.2}, {} wanted",
+                test.mean, limits.mean, test.absolute, limits.absolute
+            );
+            row.measures = serde_json::json!({
+                "mean_codes": test.mean, "absolute_codes": test.absolute, "film_hash": film.hash().to_string(),
+            });
+            if !test.passes()
+                && let Some(keep) = &args.keep
+            {
+                let name = case.scene.file_stem().unwrap_or_default().to_string_lossy();
+                keep_exr(&keep.join(format!("{name}.exr")), &image)?;
+                keep_exr(&keep.join(format!("{name}-reference.exr")), &reference)?;
+            }
+        }
+    }
+    row.seconds = start.elapsed().as_secs_f64();
+    Ok(row)
+}
+
+fn check_size(path: &Path, scene: &Scene, reference: &Image) -> Result<(), FilmError> {
+    let film = &scene.film;
+    if (film.width, film.height) == (reference.width, reference.height) {
+        return Ok(());
+    }
+    let message = format!(
+        "the film is {}x{}, but its reference {}x{}",
+        film.width, film.height, reference.width, reference.height
+    );
+    Err(FilmError::bad(path, message))
+}
+
+/// Renders the scene; says on what in `row`.
+fn render(args: &VerifyArgs, scene: &Scene, samples: u32, row: &mut Row) -> anyhow::Result<Film> {
+    for warning in &scene.warnings {
+        log::info!("{warning}");
+    }
+    let data = bake_scene(scene)?;
+    let mut renderer = args.backend.renderer(&data)?;
+    row.backend = renderer.name();
+    let crop = Rect::whole(scene.film.width, scene.film.height);
+    let mut film = film_of(scene, &data, crop);
+    let abort = AtomicBool::new(false);
+    let watch = Watch { abort: &abort, advance: &|_| {} };
+    renderer.accumulate(&Job { crop, samples: 0..samples }, &mut film, &watch)?;
+    Ok(film)
+}
+
+fn keep_exr(path: &Path, image: &Image) -> anyhow::Result<()> {
+    let mut file = OutputFile::open(path)?;
+    write::write_linear(image, &mut file).map_err(|e| FilmError::write(file.path(), e))?;
+    file.commit()?;
+    Ok(())
+}

@@ -1,0 +1,290 @@
+//! `<bsdf>`: materials.
+
+use super::Loader;
+use super::document::{Node, Result};
+use super::object::Object;
+use super::spectrum::{METALS, Role};
+use super::texture::Varying;
+use crate::scene::{
+    Channel, Distribution, Fresnel, Material, MaterialId, Model, Parameter, Principled, Rgb, TextureBinding, TextureId,
+};
+
+/// Materials within materials.
+pub const NESTING_MAX: u32 = 16;
+/// The smallest roughness: below it, Mitsuba too takes this one.
+const ALPHA_MIN: f64 = 1e-4;
+
+impl Loader<'_> {
+    /// The material of a `<bsdf>`; one that is referred to again is made once.
+    pub fn material(&mut self, node: Node) -> Result<MaterialId> {
+        self.nested_material(node, false, 0)
+    }
+
+    pub fn add_material(&mut self, material: Material) -> MaterialId {
+        self.scene.materials.push(material);
+        MaterialId(self.scene.materials.len() as u32 - 1)
+    }
+
+    /// What a shape without a BSDF shows.
+    pub fn default_material(&mut self, reflectance: f32) -> MaterialId {
+        let material = Material { color: Rgb::splat(reflectance), two_sided: false, ..Material::grey("default") };
+        match self.scene.materials.iter().position(|other| *other == material) {
+            Some(known) => MaterialId(known as u32),
+            None => self.add_material(material),
+        }
+    }
+
+    fn nested_material(&mut self, node: Node, two_sided: bool, nesting: u32) -> Result<MaterialId> {
+        if let Some(id) = self.materials.get(&(node, two_sided)) {
+            return Ok(*id);
+        }
+        let material = self.build(node, two_sided, nesting)?;
+        let id = self.add_material(material);
+        self.materials.insert((node, two_sided), id);
+        Ok(id)
+    }
+
+    /// `two_sided`: a `twosided` is around it.
+    fn build(&mut self, node: Node, two_sided: bool, nesting: u32) -> Result<Material> {
+        if nesting > NESTING_MAX {
+            return Err(self
+                .document
+                .bad(node, format!("more than {NESTING_MAX} materials within each other; does one hold itself?")));
+        }
+        let object = Object::open(self.document, node)?;
+        let name = self.document.attribute(node, "id").unwrap_or(object.plugin.name).to_owned();
+        let mut material = Material { color: Rgb::ONE, two_sided, ..Material::grey(name) };
+        let first = |count: usize| {
+            let nested = object.nested("bsdf");
+            match nested.len() == count {
+                true => Ok(nested.iter().map(|child| child.node).collect::<Vec<Node>>()),
+                false => {
+                    let message =
+                        format!("the bsdf {:?} holds {count} bsdf, found {}", object.plugin.name, nested.len());
+                    Err(self.document.bad(node, message))
+                }
+            }
+        };
+        match object.plugin.name {
+            "diffuse" => self.color(&object, &mut material, "reflectance", 0.5)?,
+            "dielectric" => {
+                material.model = Model::Dielectric { eta: relative_index(&object, "bk7")?, absorption: Rgb::ZERO };
+                self.white_only(&object, &["specular_reflectance", "specular_transmittance"])?;
+            }
+            "thindielectric" => {
+                material.model = Model::ThinDielectric { eta: relative_index(&object, "bk7")? };
+                self.white_only(&object, &["specular_reflectance", "specular_transmittance"])?;
+            }
+            "roughdielectric" => {
+                let (alpha_u, alpha_v) = self.alpha(&object, &mut material)?;
+                material.model = Model::RoughDielectric {
+                    distribution: distribution(&object)?,
+                    alpha_u,
+                    alpha_v,
+                    eta: relative_index(&object, "bk7")?,
+                    absorption: Rgb::ZERO,
+                };
+                self.white_only(&object, &["specular_reflectance", "specular_transmittance"])?;
+            }
+            "conductor" => {
+                material.model = Model::Conductor { fresnel: metal(&object)? };
+                self.specular(&object, &mut material)?;
+            }
+            "roughconductor" => {
+                let (alpha_u, alpha_v) = self.alpha(&object, &mut material)?;
+                material.model = Model::RoughConductor {
+                    distribution: distribution(&object)?,
+                    alpha_u,
+                    alpha_v,
+                    fresnel: metal(&object)?,
+                    compensate: false,
+                };
+                self.specular(&object, &mut material)?;
+            }
+            "plastic" => {
+                self.color(&object, &mut material, "diffuse_reflectance", 0.5)?;
+                self.specular(&object, &mut material)?;
+                let nonlinear = object.boolean("nonlinear")?.unwrap_or(false);
+                material.model = Model::Plastic { eta: relative_index(&object, "polypropylene")?, nonlinear };
+            }
+            "roughplastic" => {
+                self.color(&object, &mut material, "diffuse_reflectance", 0.5)?;
+                self.specular(&object, &mut material)?;
+                let alpha = self.scalar(&object, &mut material, "alpha", 0.1, Parameter::Roughness)?;
+                material.model = Model::RoughPlastic {
+                    distribution: distribution(&object)?,
+                    alpha,
+                    eta: relative_index(&object, "polypropylene")?,
+                    nonlinear: object.boolean("nonlinear")?.unwrap_or(false),
+                };
+            }
+            "principled" => self.principled(&object, &mut material)?,
+            "null" => material.model = Model::Null,
+            "twosided" => {
+                return self
+                    .build(first(1)?[0], true, nesting + 1)
+                    .map(|inner| Material { name: material.name, ..inner });
+            }
+            "mask" => {
+                let mut inner = self.build(first(1)?[0], two_sided, nesting + 1)?;
+                inner.opacity *= self.scalar(&object, &mut inner, "opacity", 0.5, Parameter::Opacity)?;
+                return Ok(inner);
+            }
+            "blendbsdf" => {
+                let children = first(2)?;
+                let weight = self.scalar(&object, &mut material, "weight", 0.5, Parameter::Weight)?;
+                object.required("weight", object.property("weight"))?;
+                let a = self.nested_material(children[0], two_sided, nesting + 1)?;
+                let b = self.nested_material(children[1], two_sided, nesting + 1)?;
+                material.model = Model::Blend { weight, a, b };
+            }
+            // normalmap, bumpmap
+            kind => {
+                let mut inner = self.build(first(1)?[0], two_sided, nesting + 1)?;
+                let (parameter, source) = match kind {
+                    "normalmap" => (Parameter::Normal, object.property("normalmap")),
+                    _ => (Parameter::Bump, object.only("texture")?.map(|child| child.node)),
+                };
+                let Some(source) = source.filter(|source| self.document.tag(*source) == "texture") else {
+                    return Err(self.document.bad(node, format!("the bsdf {kind:?} needs a texture")));
+                };
+                let scale =
+                    if kind == "bumpmap" { object.float_in("scale", -1e6, 1e6)?.unwrap_or(1.0) as f32 } else { 1.0 };
+                let texture = self.texture(source)?;
+                inner.textures.push(TextureBinding { parameter, texture, channel: Channel::Rgb, scale });
+                return Ok(inner);
+            }
+        }
+        Ok(material)
+    }
+
+    fn principled(&mut self, object: &Object, material: &mut Material) -> Result<()> {
+        self.color(object, material, "base_color", 0.5)?;
+        object.exclusive("eta", "specular")?;
+        let unit = |name: &str, default: f64| Ok(object.float_in(name, 0.0, 1.0)?.unwrap_or(default) as f32);
+        let specular = f64::from(unit("specular", 0.5)?);
+        let eta = match object.has("eta") {
+            true => object.index("eta", "bk7")? as f32,
+            // Mitsuba's and Burley's "specular": the reflectance at normal incidence is 0.08 of it.
+            false => (2.0 / (1.0 - libm::sqrt(0.08 * specular)) - 1.0) as f32,
+        };
+        material.model = Model::Principled(Principled {
+            roughness: self.scalar(object, material, "roughness", 0.5, Parameter::Roughness)?,
+            anisotropic: unit("anisotropic", 0.0)?,
+            metallic: self.scalar(object, material, "metallic", 0.0, Parameter::Metallic)?,
+            spec_trans: unit("spec_trans", 0.0)?,
+            eta,
+            spec_tint: unit("spec_tint", 0.0)?,
+            sheen: unit("sheen", 0.0)?,
+            sheen_tint: unit("sheen_tint", 0.0)?,
+            flatness: unit("flatness", 0.0)?,
+            clearcoat: unit("clearcoat", 0.0)?,
+            clearcoat_gloss: unit("clearcoat_gloss", 0.0)?,
+        });
+        Ok(())
+    }
+
+    /// The base colour: a constant or a texture.
+    fn color(&mut self, object: &Object, material: &mut Material, name: &str, default: f32) -> Result<()> {
+        let Some(node) = object.property(name) else {
+            material.color = Rgb::splat(default);
+            return Ok(());
+        };
+        if self.document.tag(node) != "texture" {
+            material.color = super::color::color(self.document, node, Role::Reflectance)?;
+            return Ok(());
+        }
+        match self.textures.read(self.document, node, &mut self.scene)? {
+            Varying::Texture(texture) => material.textures.push(TextureBinding::color(texture)),
+            // Vertex colours multiply the colour of every material.
+            Varying::VertexColor(scale) => material.color = Rgb::splat(scale),
+        }
+        Ok(())
+    }
+
+    fn texture(&mut self, node: Node) -> Result<TextureId> {
+        match self.textures.read(self.document, node, &mut self.scene)? {
+            Varying::Texture(texture) => Ok(texture),
+            _ => Err(self.document.bad(node, "vertex colours can only be a colour")),
+        }
+    }
+
+    /// A number within 0 and 1 or a texture, whose constant is 1.
+    fn scalar(
+        &mut self,
+        object: &Object,
+        material: &mut Material,
+        name: &str,
+        default: f64,
+        parameter: Parameter,
+    ) -> Result<f32> {
+        let Some(node) = object.property(name) else { return Ok(default as f32) };
+        if self.document.tag(node) == "texture" {
+            let texture = self.texture(node)?;
+            let texture = self.textures.grey(texture, &mut self.scene);
+            material.textures.push(TextureBinding { parameter, texture, channel: Channel::R, scale: 1.0 });
+            return Ok(1.0);
+        }
+        let low = if matches!(parameter, Parameter::Roughness | Parameter::RoughnessU | Parameter::RoughnessV) {
+            ALPHA_MIN
+        } else {
+            0.0
+        };
+        Ok(object.float_in(name, 0.0, 1.0)?.unwrap_or(default).max(low) as f32)
+    }
+
+    /// `alpha`, or `alpha_u` and `alpha_v`.
+    fn alpha(&mut self, object: &Object, material: &mut Material) -> Result<(f32, f32)> {
+        object.exclusive("alpha", "alpha_u")?;
+        object.exclusive("alpha", "alpha_v")?;
+        if !object.has("alpha_u") && !object.has("alpha_v") {
+            let alpha = self.scalar(object, material, "alpha", 0.1, Parameter::Roughness)?;
+            return Ok((alpha, alpha));
+        }
+        if let Some(missing) = ["alpha_u", "alpha_v"].into_iter().find(|name| !object.has(name)) {
+            return object.required(missing, None);
+        }
+        let u = self.scalar(object, material, "alpha_u", 0.1, Parameter::RoughnessU)?;
+        Ok((u, self.scalar(object, material, "alpha_v", 0.1, Parameter::RoughnessV)?))
+    }
+
+    fn specular(&mut self, object: &Object, material: &mut Material) -> Result<()> {
+        material.specular_color = object.color("specular_reflectance", Role::Reflectance)?.unwrap_or(Rgb::ONE);
+        Ok(())
+    }
+
+    /// Says that factors on an interface without losses are left out.
+    fn white_only(&mut self, object: &Object, names: &[&str]) -> Result<()> {
+        for name in names {
+            if object.color(name, Role::Reflectance)?.is_some_and(|color| color != Rgb::ONE) {
+                let location = self.document.location_of(object.node);
+                let message = format!("{location}: {name:?} of the bsdf {:?} is taken as 1", object.plugin.name);
+                self.scene.warnings.push(message);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The index inside over that outside.
+fn relative_index(object: &Object, inside: &str) -> Result<f32> {
+    Ok((object.index("int_ior", inside)? / object.index("ext_ior", "air")?) as f32)
+}
+
+fn distribution(object: &Object) -> Result<Distribution> {
+    let names = [("beckmann", Distribution::Beckmann), ("ggx", Distribution::TrowbridgeReitz)];
+    Ok(object.choice("distribution", &names)?.unwrap_or_default())
+}
+
+/// `material`, or `eta` and `k` (0 and 1 without either: a perfect mirror).
+fn metal(object: &Object) -> Result<Fresnel> {
+    object.exclusive("material", "eta")?;
+    object.exclusive("material", "k")?;
+    let names: Vec<(&str, usize)> = METALS.iter().enumerate().map(|(index, (name, ..))| (*name, index)).collect();
+    if let Some(index) = object.choice("material", &names)? {
+        let (_, eta, k) = METALS[index];
+        return Ok(Fresnel::Conductor { eta: Rgb::from_array(eta), k: Rgb::from_array(k) });
+    }
+    let eta = object.color("eta", Role::Index)?.unwrap_or(Rgb::ZERO);
+    Ok(Fresnel::Conductor { eta, k: object.color("k", Role::Index)?.unwrap_or(Rgb::ONE) })
+}

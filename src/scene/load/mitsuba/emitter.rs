@@ -1,0 +1,119 @@
+//! `<emitter>`: lights of a shape, of a place, and around everything.
+
+use super::Loader;
+use super::document::{Node, Result};
+use super::object::{Child, Object};
+use super::spectrum::Role;
+use crate::scene::load::image::ColorSpace;
+use crate::scene::load::texture_files::intern;
+use crate::scene::{Attenuation, Background, Environment, IntensityUnit, Light, LightKind, Rgb, Wrap};
+use glam::{DVec3, Vec3};
+
+impl Loader<'_> {
+    /// The radiance of a shape's emitter.
+    pub fn area_radiance(&self, emitter: Child) -> Result<Rgb> {
+        let object = Object::open(self.document, emitter.node)?;
+        if object.plugin.name != "area" {
+            let message = format!("a shape has an emitter of type \"area\", found {:?}", object.plugin.name);
+            return Err(self.document.bad(emitter.written, message));
+        }
+        Ok(object.color("radiance", Role::Emission)?.unwrap_or(Rgb::ONE))
+    }
+
+    /// Adds an emitter that stands in the scene itself.
+    pub fn add_emitter(&mut self, node: Node) -> Result<()> {
+        let object = Object::open(self.document, node)?;
+        match object.plugin.name {
+            // Shapes refer to it.
+            "area" => Ok(()),
+            "constant" => {
+                let radiance = object.color("radiance", Role::Emission)?.unwrap_or(Rgb::ONE);
+                self.scene.background = Background::flat(radiance);
+                self.claim_surroundings(&object)
+            }
+            "envmap" => {
+                self.claim_surroundings(&object)?;
+                let Some(file) = object.property("filename") else { return object.required("filename", None) };
+                let mut texture = self.textures.picture(&self.document.find_file(file, "value")?, ColorSpace::Srgb)?;
+                // The rows of Mitsuba's pictures lie from pole to pole, ours have their middles half a row inside.
+                let rows = texture.height as f32;
+                (texture.scale[1], texture.offset[1]) = ((rows - 1.0) / rows, 0.5 / rows);
+                texture.wrap_v = Wrap::Clamp;
+                let scale = object.float_in("scale", 0.0, 1e12)?.unwrap_or(1.0);
+                self.scene.background = Background::Image(Environment {
+                    texture: intern(&mut self.scene.textures, texture),
+                    scale: Rgb::splat(scale as f32),
+                    to_world: object.transform("to_world")?,
+                });
+                Ok(())
+            }
+            "point" => {
+                let position = match object.vector("position")? {
+                    Some(_) if object.has("to_world") => {
+                        return Err(object.bad("to_world", "\"position\" and \"to_world\" exclude each other"));
+                    }
+                    Some(position) => position,
+                    None => object.transform("to_world")?.0.translation,
+                };
+                let kind = LightKind::Point { position: position.as_vec3() };
+                self.add_light(&object, kind, "intensity", Attenuation::InverseSquare)
+            }
+            "spot" => {
+                let place = object.transform("to_world")?.0;
+                let outer = object.float_in("cutoff_angle", 1e-3, 89.999)?.unwrap_or(20.0);
+                let inner = object.float_in("beam_width", 0.0, 89.999)?.unwrap_or(outer * 0.75);
+                if inner > outer {
+                    return Err(object.bad("beam_width", "\"beam_width\" is at most \"cutoff_angle\""));
+                }
+                let kind = LightKind::Spot {
+                    position: place.translation.as_vec3(),
+                    direction: self.unit(&object, "to_world", place.matrix3.z_axis)?,
+                    inner: inner.to_radians() as f32,
+                    outer: outer.to_radians() as f32,
+                    exponent: 0.0,
+                };
+                self.add_light(&object, kind, "intensity", Attenuation::InverseSquare)
+            }
+            // directional
+            _ => {
+                let direction = match object.vector("direction")? {
+                    Some(_) if object.has("to_world") => {
+                        return Err(object.bad("to_world", "\"direction\" and \"to_world\" exclude each other"));
+                    }
+                    Some(direction) => direction,
+                    None => object.transform("to_world")?.0.matrix3.z_axis,
+                };
+                let kind = LightKind::Directional { direction: self.unit(&object, "direction", direction)? };
+                self.add_light(&object, kind, "irradiance", Attenuation::None)
+            }
+        }
+    }
+
+    fn unit(&self, object: &Object, name: &str, v: DVec3) -> Result<Vec3> {
+        let length = libm::sqrt(v.dot(v));
+        match length > 1e-12 {
+            true => Ok((v / length).as_vec3()),
+            false => Err(object.bad(name, format!("{name:?} has no direction"))),
+        }
+    }
+
+    fn add_light(&mut self, object: &Object, kind: LightKind, strength: &str, attenuation: Attenuation) -> Result<()> {
+        let intensity = object.color(strength, Role::Emission)?.unwrap_or(Rgb::ONE);
+        let name = self.document.attribute(object.node, "id").unwrap_or(object.plugin.name).to_owned();
+        let unit = IntensityUnit::Radiometric;
+        self.scene.lights.push(Light { name, kind, intensity, unit, attenuation, casts_shadow: true });
+        Ok(())
+    }
+
+    /// There is one environment.
+    fn claim_surroundings(&mut self, object: &Object) -> Result<()> {
+        match self.environment.replace(object.node) {
+            None => Ok(()),
+            Some(first) => {
+                let message =
+                    format!("a second emitter around the scene; the first is at {}", self.document.location_of(first));
+                Err(self.document.bad(object.node, message))
+            }
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! `<integrator>`.
+
+use super::document::{Document, Node, Result};
+use super::object::Object;
+use crate::scene::{Integrator, Scene};
+
+/// Integrators within integrators.
+const NESTING_MAX: u32 = 4;
+/// The house's own limit of scattering events.
+const DEPTH_MAX: u32 = 64;
+
+/// Reads how light is followed.
+pub fn read_integrator(document: &Document, node: Node, scene: &mut Scene) -> Result<()> {
+    read(document, node, scene, 0)
+}
+
+fn read(document: &Document, node: Node, scene: &mut Scene, nesting: u32) -> Result<()> {
+    let object = Object::open(document, node)?;
+    match object.plugin.name {
+        kind @ ("moment" | "aov") => {
+            if kind == "aov" {
+                let location = document.location_of(node);
+                scene
+                    .warnings
+                    .push(format!("{location}: the integrator \"aov\" is left out; --aov gives further layers"));
+            }
+            match object.only("integrator")? {
+                Some(child) if nesting < NESTING_MAX => read(document, child.node, scene, nesting + 1),
+                Some(child) => Err(document.bad(child.written, "too many integrators within each other")),
+                None => Err(document.bad(node, format!("the integrator {kind:?} holds an integrator"))),
+            }
+        }
+        kind => {
+            // Mitsuba counts the edges of a path, gonio the surfaces it scatters at: one less. -1 has no end there.
+            let edges =
+                if kind == "direct" { Some(2) } else { object.integer("max_depth", -1, i64::from(i32::MAX))? };
+            let depth = match edges {
+                Some(edges) if edges >= 0 => (edges - 1).max(0).min(i64::from(DEPTH_MAX)) as u32,
+                _ => DEPTH_MAX,
+            };
+            scene.settings.integrator = if kind == "direct" { Integrator::Direct } else { Integrator::Path };
+            scene.settings.max_depth = depth;
+            if kind != "direct"
+                && let Some(rr_depth) = object.integer("rr_depth", 0, i64::from(i32::MAX))?
+            {
+                scene.settings.rr_depth = rr_depth.min(i64::from(DEPTH_MAX) + 1) as u32;
+            }
+            if object.boolean("hide_emitters")? == Some(true) {
+                let location = document.location_of(node);
+                scene.warnings.push(format!(
+                    "{location}: \"hide_emitters\" has no effect; --transparent leaves the background out"
+                ));
+            }
+            Ok(())
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Mitsuba 3's XML scenes.
+//!
+//! `document` reads the files, `plugin` lists what is known of every plug-in, `object` reads one; the other files give
+//! them their meaning. What Mitsuba's documentation says, down to its defaults, is what is meant; where gonio cannot do
+//! that, it is an error with a place, or a warning.
+
+mod bsdf;
+mod color;
+mod document;
+mod emitter;
+mod integrator;
+mod object;
+mod plugin;
+mod sensor;
+mod serialized;
+mod shape;
+mod spectrum;
+mod texture;
+mod transform;
+
+use super::staging::{bare_scene, lacks_camera};
+use crate::scene::{MaterialId, MeshId, Rgb, Scene, SceneError};
+use document::{Document, Node, hint};
+use object::CLASSES;
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Part of the message about scenes with participating media.
+pub const NO_MEDIA: &str = "gonio reads surfaces, not media";
+
+/// What makes one mesh differ from another.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+struct MeshKey {
+    /// Or the name of a shape.
+    file: String,
+    index: u32,
+    /// Without vertex normals.
+    flat: bool,
+    /// Inside out.
+    flip: bool,
+    /// v counts from the bottom in the file.
+    turned: bool,
+    /// Its vertex colours are shown.
+    colored: bool,
+}
+
+/// A scene on its way.
+struct Loader<'a> {
+    document: &'a Document,
+    scene: Scene,
+    textures: texture::Textures,
+    /// By element, and whether a `twosided` is around it.
+    materials: HashMap<(Node, bool), MaterialId>,
+    meshes: HashMap<MeshKey, MeshId>,
+    /// The emitter around the scene.
+    environment: Option<Node>,
+}
+
+/// Loads the scene in `path`. `defines`: values of its parameters (`-D name=value`).
+pub fn load(path: &Path, defines: &[(String, String)]) -> Result<Scene, SceneError> {
+    let document = Document::read(path, defines)?;
+    let mut loader = Loader {
+        document: &document,
+        scene: bare_scene(path),
+        textures: texture::Textures::default(),
+        materials: HashMap::new(),
+        meshes: HashMap::new(),
+        environment: None,
+    };
+    for node in document.children(document.root) {
+        loader.read(*node)?;
+    }
+    loader.finish()
+}
+
+/// The tables of what is read, as scenes/README.md prints them: (element, rows).
+pub fn plugin_tables() -> Vec<(&'static str, String)> {
+    plugin::tables()
+}
+
+impl Loader<'_> {
+    /// One element of the scene itself.
+    fn read(&mut self, written: Node) -> Result<(), SceneError> {
+        let node = self.document.resolve(written)?;
+        match self.document.tag(node) {
+            "shape" => self.add_shape(node),
+            "emitter" => self.add_emitter(node),
+            "sensor" if lacks_camera(&self.scene) => sensor::read_sensor(self.document, node, &mut self.scene),
+            "sensor" => {
+                let location = self.document.location_of(node);
+                self.scene.warnings.push(format!("{location}: the first sensor is used, this one is not"));
+                Ok(())
+            }
+            "integrator" => integrator::read_integrator(self.document, node, &mut self.scene),
+            // Others refer to them; what nobody refers to is still checked.
+            "bsdf" => self.material(node).map(|_| ()),
+            "texture" | "spectrum" | "sampler" | "film" | "rfilter" => {
+                object::Object::open(self.document, node).map(|_| ())
+            }
+            tag if CLASSES.contains(&tag) => {
+                Err(self.document.bad(node, format!("<{tag}> is not supported: {NO_MEDIA}")))
+            }
+            tag => {
+                let hint = hint(tag, CLASSES.iter().copied());
+                let message = format!("<{tag}> has no meaning in a scene, which holds {}{hint}", CLASSES.join(", "));
+                Err(self.document.bad(node, message))
+            }
+        }
+    }
+
+    fn finish(self) -> Result<Scene, SceneError> {
+        let mut scene = self.scene;
+        let glows = scene.materials.iter().any(|material| material.emission != Rgb::ZERO);
+        if scene.lights.is_empty() && !glows && !scene.background.shines() {
+            scene.warnings.push(format!("{}: the scene has no light: the picture will be black", scene.name));
+        }
+        Ok(scene)
+    }
+}

@@ -1,0 +1,113 @@
+//! `<texture>`: pictures and checkerboards, in the house's convention that v = 0 is a picture's bottom row.
+//!
+//! In Mitsuba v = 0 is the top row. Meshes are turned over when they are loaded (v becomes 1 - v), and `to_uv` with them.
+
+use super::document::{Document, Node, Result};
+use super::object::Object;
+use super::spectrum::Role;
+use crate::scene::load::image::ColorSpace;
+use crate::scene::load::texture_files::{TextureFiles, intern};
+use crate::scene::{Scene, Texture, TextureData, TextureId, Wrap};
+use std::path::Path;
+use std::sync::Arc;
+
+/// What varies over a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Varying {
+    Texture(TextureId),
+    /// The vertex colours of the mesh.
+    VertexColor(f32),
+}
+
+/// Reads textures into a scene; equal ones once.
+#[derive(Debug, Default)]
+pub struct Textures {
+    files: TextureFiles,
+}
+
+impl Textures {
+    /// The texture in `node`.
+    pub fn read(&mut self, document: &Document, node: Node, scene: &mut Scene) -> Result<Varying> {
+        let object = Object::open(document, node)?;
+        let texture = match object.plugin.name {
+            "bitmap" => self.bitmap(&object)?,
+            "checkerboard" => checkerboard(&object)?,
+            // mesh_attribute
+            _ => {
+                let name = object.text("name")?.unwrap_or("vertex_color");
+                if name != "vertex_color" {
+                    return Err(
+                        object.bad("name", format!("only the attribute \"vertex_color\" is read, found {name:?}"))
+                    );
+                }
+                return Ok(Varying::VertexColor(object.float_in("scale", 0.0, 1e6)?.unwrap_or(1.0) as f32));
+            }
+        };
+        Ok(Varying::Texture(intern(&mut scene.textures, texture)))
+    }
+
+    /// A picture as it lies in its file.
+    pub fn picture(&mut self, path: &Path, space: ColorSpace) -> Result<Texture> {
+        self.files.load(path, space)
+    }
+
+    /// The texture with its luminance in every channel: what a number takes from a coloured picture.
+    pub fn grey(&mut self, id: TextureId, scene: &mut Scene) -> TextureId {
+        let texture = &scene.textures[id.0 as usize];
+        let linear = |code: u8| crate::scene::load::image::srgb_to_linear(f64::from(code) / 255.0) as f32;
+        let luminance = |r: f32, g: f32, b: f32| (0.212671 * r + 0.715160 * g) + 0.072169 * b;
+        let spread = |v: f32| [v, v, v, 1.0];
+        let texels: Vec<[f32; 4]> = match &texture.data {
+            TextureData::Srgb8(texels) if texels.iter().any(|[r, g, b, _]| r != g || g != b) => {
+                texels.iter().map(|t| spread(luminance(linear(t[0]), linear(t[1]), linear(t[2])))).collect()
+            }
+            TextureData::Linear8(texels) if texels.iter().any(|[r, g, b, _]| r != g || g != b) => {
+                let part = |code: u8| f32::from(code) / 255.0;
+                texels.iter().map(|t| spread(luminance(part(t[0]), part(t[1]), part(t[2])))).collect()
+            }
+            TextureData::Float(texels) if texels.iter().any(|[r, g, b, _]| r != g || g != b) => {
+                texels.iter().map(|t| spread(luminance(t[0], t[1], t[2]))).collect()
+            }
+            _ => return id,
+        };
+        let grey = Texture { data: TextureData::Float(Arc::new(texels)), ..texture.clone() };
+        intern(&mut scene.textures, grey)
+    }
+
+    fn bitmap(&mut self, object: &Object) -> Result<Texture> {
+        let Some(node) = object.property("filename") else { return object.required("filename", None) };
+        let raw = object.boolean("raw")?.unwrap_or(false);
+        let path = object.document.find_file(node, "value")?;
+        let mut texture = self.picture(&path, if raw { ColorSpace::Linear } else { ColorSpace::Srgb })?;
+        texture.bilinear = object.choice("filter_type", &[("bilinear", true), ("nearest", false)])?.unwrap_or(true);
+        let modes = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
+        let wrap = object.choice("wrap_mode", &modes)?.unwrap_or(Wrap::Repeat);
+        (texture.wrap_u, texture.wrap_v) = (wrap, wrap);
+        place(&mut texture, object)?;
+        Ok(texture)
+    }
+}
+
+/// Two by two texels: `color0` where u and v lie in the same half of their tile.
+fn checkerboard(object: &Object) -> Result<Texture> {
+    let color = |name: &str, default: f32| {
+        let color = object.color(name, Role::Reflectance)?.unwrap_or(glam::Vec3::splat(default));
+        Ok([color.x, color.y, color.z, 1.0])
+    };
+    let (a, b) = (color("color0", 0.4)?, color("color1", 0.2)?);
+    let mut texture = Texture::new("checkerboard", 2, 2, TextureData::Float(Arc::new(vec![a, b, b, a])));
+    texture.bilinear = false;
+    place(&mut texture, object)?;
+    Ok(texture)
+}
+
+/// Sets what `to_uv` says: u' = a u + b v + c and v' = d u + e v + f in Mitsuba's coordinates.
+fn place(texture: &mut Texture, object: &Object) -> Result<()> {
+    let map = object.transform("to_uv")?.0;
+    let (u, v, o) = (map.matrix3.x_axis, map.matrix3.y_axis, map.translation);
+    texture.scale = [u.x as f32, v.y as f32];
+    // v = 1 - v here, and v' likewise.
+    texture.shear = [-v.x as f32, -u.y as f32];
+    texture.offset = [(v.x + o.x) as f32, (1.0 - v.y - o.y) as f32];
+    Ok(())
+}
