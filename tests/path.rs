@@ -31,7 +31,8 @@ fn mean(scene: &Scene) -> Mean {
     mean_of(scene, &bake(scene).expect("bakes"), 1)
 }
 
-/// Five standard errors, one in two million; and 1e-5 of the value for rounding where there is no noise.
+/// Five standard errors, one in two million; and 1e-5 of the value for rounding (of e^-x, and of where
+/// rays start) where there is no noise.
 #[track_caller]
 fn assert_mean(found: Mean, wanted: f64, what: &str) {
     let tolerance = 5.0 * found.error + 1.0e-5 * wanted;
@@ -191,7 +192,7 @@ fn one_light_gives_one_mean_as_samples_of_the_surface_of_the_light_and_of_both()
     let (both, surface) = (mean_of(&scene, &both, 1), mean_of(&scene, &surface, 1));
     assert_equal_means(both, surface, 0.0, "both ways, and the surface's alone");
     let (light, rest) = (mean_of(&scene, &light_only, 1), mean_of(&scene, &surface_only, 1));
-    assert!(light.value > 0.1 * both.value && rest.value > 0.1 * both.value, "{light:?} {rest:?} {both:?}");
+    assert!(light.value > 0.02 * both.value && rest.value > 0.02 * both.value, "{light:?} {rest:?} {both:?}");
     let sum = Mean { value: light.value + rest.value, error: light.error + rest.error };
     assert_equal_means(both, sum, 0.0, "the two parts of the heuristic");
     // The irradiance of a sphere on the axis above a point, pi L sin^2, is the mean at the centre only: the closed form of
@@ -326,7 +327,7 @@ fn absorption_follows_beer_inside_glass_of_index_one() {
     scene.background = Background::flat(Rgb::ONE);
     let model = Model::Dielectric { eta: 1.0, absorption: Rgb::new(0.0, 0.5, 1.0) };
     scene.materials = vec![Material { model, ..matte(1.0) }];
-    scene.meshes = vec![shape::cuboid([40.0, 1.0, 40.0], 1)];
+    scene.meshes = vec![shape::cuboid([4.0, 1.0, 4.0], 1)];
     scene.objects = vec![object(Geometry::Mesh(MeshId(0)), Transform::default())];
     scene.camera.up = Vec3::Z;
     (scene.camera.eye, scene.camera.target) = (Vec3::Y * 3.0, Vec3::ZERO);

@@ -57,20 +57,19 @@ float cone_height(float distance2) {
     return sin2 * rcp(1.0 + sqrt_(max_(1.0 - sin2, 0.0)));
 }
 
-// The point of the unit sphere that the direction `u` of the cone of its visible cap meets first from `origin`.
-// Source: Shirley, Wang and Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting Calculations"; in the form of
-// Pharr, Jakob and Humphreys 2023, "Physically Based Rendering", section 6.2.4, which does not cancel for small cones.
+// The way from `origin` to the point of the unit sphere that the direction `u` of the cone of its visible cap meets first.
+// Source: Shirley, Wang and Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting Calculations"; the root of the
+// sphere's quadratic that does not cancel, so that directions are right also from just above the sphere.
 vec3 cone_point(vec3 origin, float distance2, vec2 u) {
     float height = u.x * cone_height(distance2);
     float cos_theta = 1.0 - height;
     float sin2_theta = height * (2.0 - height);
+    float sin_theta = sqrt_(sin2_theta);
     float distance = sqrt_(distance2);
-    // sin theta max = 1 / distance.
-    float cos_alpha = sin2_theta * distance + cos_theta * sqrt_(max_(1.0 - sin2_theta * distance2, 0.0));
-    float cos_bounded = min_(cos_alpha, 1.0);
-    float sin_alpha = sqrt_(max_((1.0 - cos_bounded) * (1.0 + cos_bounded), 0.0));
-    Frame to_viewer = frame_from_normal(origin * rcp(distance));
-    return to_world(to_viewer, vec3(sin_alpha * cos_turns(u.y), sin_alpha * sin_turns(u.y), cos_bounded));
+    float half_chord = sqrt_(max_(1.0 - sin2_theta * distance2, 0.0));
+    float reach = div(distance2 - 1.0, cos_theta * distance + half_chord);
+    Frame to_centre = frame_from_normal(origin * -rcp(distance));
+    return to_world(to_centre, vec3(sin_theta * cos_turns(u.y), sin_theta * sin_turns(u.y), cos_theta) * reach);
 }
 
 // Density per solid angle of object space with which `sample_sphere_light` draws the point that `to_point` (not zero)
@@ -94,8 +93,7 @@ LightSample sample_sphere_light(Emitter emitter, Instance instance, vec3 positio
     if (!outside && (emitter.flags & EMITTER_ONE_SIDED) != 0u) {
         return no_light();
     }
-    vec3 point = outside ? cone_point(origin, distance2, u) : square_to_uniform_sphere(u);
-    vec3 to_point = point - origin;
+    vec3 to_point = outside ? cone_point(origin, distance2, u) : square_to_uniform_sphere(u) - origin;
     vec3 to_light = transform_vector(instance.to_world, to_point);
     float distance = length3(to_light);
     vec3 wi = to_light * rcp(distance);

@@ -117,6 +117,19 @@ fn bake_light_sources(scene: &Scene, parts: &Parts, data: &mut SceneData) -> Res
         primitives.sort_unstable();
         primitives
     };
+    // What passes a pane is found by chance and counts in full: no shadow ray may find it as well.
+    for index in 0..data.instances.len() {
+        let instance = &data.instances[index];
+        let of_face = |primitive: u32| data.faces[(instance.first_face + primitive) as usize].material;
+        let is_pane = |id: u32| data.materials[id as usize].k_t > 0.0;
+        let pane = match instance.material {
+            INVALID => primitives(index).into_iter().any(|primitive| is_pane(of_face(primitive))),
+            id => is_pane(id),
+        };
+        if pane {
+            data.instances[index].flags &= !INSTANCE_NO_SHADOW;
+        }
+    }
     bake_emitters(environment, &primitives, world, data)
 }
 

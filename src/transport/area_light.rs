@@ -3,7 +3,7 @@
 use crate::layout::{EMITTER_ONE_SIDED, Emitter, Instance};
 use crate::shading::frame::{frame_from_normal, to_world};
 use crate::shading::light::{LightSample, no_light};
-use crate::shading::math::{INV_FOUR_PI, INV_TWO_PI, cos_turns, div, dot3, length3, max_, min_, rcp, sin_turns, sqrt_};
+use crate::shading::math::{INV_FOUR_PI, INV_TWO_PI, cos_turns, div, dot3, length3, max_, rcp, sin_turns, sqrt_};
 use crate::shading::spectrum::spectrum_from_rgb;
 use crate::shading::warp::{square_to_uniform_sphere, square_to_uniform_triangle};
 use crate::trace::ray::{transform_point, transform_vector};
@@ -58,21 +58,20 @@ pub fn cone_height(distance2: f32) -> f32 {
     sin2 * rcp(1.0 + sqrt_(max_(1.0 - sin2, 0.0)))
 }
 
-/// The point of the unit sphere that the direction `u` of the cone of its visible cap meets first from `origin`.
-/// Source: Shirley, Wang and Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting Calculations"; in the form of
-/// Pharr, Jakob and Humphreys 2023, "Physically Based Rendering", section 6.2.4, which does not cancel for small cones.
+/// The way from `origin` to the point of the unit sphere that the direction `u` of the cone of its visible cap meets first.
+/// Source: Shirley, Wang and Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting Calculations"; the root of the
+/// sphere's quadratic that does not cancel, so that directions are right also from just above the sphere.
 #[inline]
 pub fn cone_point(origin: Vec3, distance2: f32, u: Vec2) -> Vec3 {
     let height = u.x * cone_height(distance2);
     let cos_theta = 1.0 - height;
     let sin2_theta = height * (2.0 - height);
+    let sin_theta = sqrt_(sin2_theta);
     let distance = sqrt_(distance2);
-    // sin theta max = 1 / distance.
-    let cos_alpha = sin2_theta * distance + cos_theta * sqrt_(max_(1.0 - sin2_theta * distance2, 0.0));
-    let cos_bounded = min_(cos_alpha, 1.0);
-    let sin_alpha = sqrt_(max_((1.0 - cos_bounded) * (1.0 + cos_bounded), 0.0));
-    let to_viewer = frame_from_normal(origin * rcp(distance));
-    to_world(to_viewer, Vec3::new(sin_alpha * cos_turns(u.y), sin_alpha * sin_turns(u.y), cos_bounded))
+    let half_chord = sqrt_(max_(1.0 - sin2_theta * distance2, 0.0));
+    let reach = div(distance2 - 1.0, cos_theta * distance + half_chord);
+    let to_centre = frame_from_normal(origin * -rcp(distance));
+    to_world(to_centre, Vec3::new(sin_theta * cos_turns(u.y), sin_theta * sin_turns(u.y), cos_theta) * reach)
 }
 
 /// Density per solid angle of object space with which `sample_sphere_light` draws the point that `to_point` (not zero)
@@ -98,8 +97,7 @@ pub fn sample_sphere_light(emitter: &Emitter, instance: &Instance, position: Vec
     if !outside && (emitter.flags & EMITTER_ONE_SIDED) != 0 {
         return no_light();
     }
-    let point = if outside { cone_point(origin, distance2, u) } else { square_to_uniform_sphere(u) };
-    let to_point = point - origin;
+    let to_point = if outside { cone_point(origin, distance2, u) } else { square_to_uniform_sphere(u) - origin };
     let to_light = transform_vector(instance.to_world, to_point);
     let distance = length3(to_light);
     let wi = to_light * rcp(distance);
