@@ -4,9 +4,11 @@
 //! scene file -> `scene` -> `bake` -> `render` (schedules `transport`) -> `film` -> image, report.
 
 pub mod bake;
+pub mod bench;
 pub mod cli;
 pub mod film;
 pub mod layout;
+pub mod plot;
 pub mod render;
 pub mod scene;
 pub mod shaders;

@@ -6,8 +6,11 @@ use std::collections::{BTreeMap, BTreeSet};
 mod source;
 #[path = "architecture/strict_text.rs"]
 mod strict_text;
+#[path = "architecture/through.rs"]
+mod through;
 
 use source::{Function, Source, root, set, sources, tokens};
+use through::THROUGH;
 
 /// Folders whose files exist twice, in `src/` and in `shaders/`.
 const TWINS: [&str; 4] = ["layout", "shading", "trace", "transport"];
@@ -294,40 +297,6 @@ fn a_twin_that_differs_in_a_name_an_argument_or_a_word_is_seen() {
     assert_eq!(compare("/// One.\n/// Two.\n#[inline]\nfn f(a: f32) -> f32 {\n    a\n}\n", glsl), 0);
     assert_eq!(compare("/// One.\n/// 2.\nfn f(a: f32) -> f32 {\n    a\n}\n", glsl), 1);
 }
-
-/// Twins that no parity kernel calls by name: the function, and the one through which a kernel runs it.
-const THROUGH: [(&str, &str); 30] = [
-    ("eval_lambert", "eval_material"),
-    ("eval_phong", "eval_material"),
-    ("eval_blinn_phong", "eval_material"),
-    ("eval_cook_torrance", "eval_material"),
-    ("pdf_lambert", "pdf_material"),
-    ("pdf_phong", "pdf_material"),
-    ("pdf_blinn_phong", "pdf_material"),
-    ("pdf_cook_torrance", "pdf_material"),
-    ("sample_lambert", "sample_material"),
-    ("sample_phong", "sample_material"),
-    ("sample_blinn_phong", "sample_material"),
-    ("sample_cook_torrance", "sample_material"),
-    ("fresnel_material", "eval_cook_torrance"),
-    ("make_sample", "finish_sample"),
-    ("no_sample", "sample_material"),
-    ("finish_sample", "sample_material"),
-    ("sample_mirror", "sample_material"),
-    ("sample_conductor", "sample_material"),
-    ("sample_dielectric", "sample_material"),
-    ("sample_thin_dielectric", "sample_material"),
-    ("sample_null", "sample_material"),
-    ("thin_reflectance", "sample_thin_dielectric"),
-    ("fresnel_schlick3", "fresnel_material"),
-    ("beckmann_d_slope", "beckmann_d"),
-    ("refraction_root", "fresnel_dielectric"),
-    ("no_direction", "sample_material"),
-    ("on_upper_side", "eval_lambert"),
-    ("reflect_local", "refract_local"),
-    ("specular_probability", "sample_phong"),
-    ("approx_intersect_node", "approximate: may differ, and tests/trace.rs proves it loses nothing"),
-];
 
 /// The code of a GLSL file with `#ifdef GONIO_FETCH ... #endif` blanked: what needs no scene.
 fn without_scene(file: &Source) -> Source {

@@ -43,7 +43,10 @@ fn unknown_keys_are_refused_with_the_nearest_one() {
         ("[rander]\nsamples = 1\n", "a.toml:5:2: unknown key \"rander\"; did you mean \"render\"?"),
         ("[render]\n  smaples = 3\n", "a.toml:6:3: unknown key \"smaples\"; did you mean \"samples\"?"),
         ("[render]\nspp = 3\n", "a.toml:6:1: unknown key \"spp\"; did you mean \"samples\"?"),
-        ("[[material]]\nname = \"a\"\nroughnes = 1\n", "a.toml:7:1: unknown key \"roughnes\"; did you mean \"m\"?"),
+        (
+            "[[material]]\nname = \"a\"\nroughnes = 1\n",
+            "a.toml:7:1: unknown key \"roughnes\"; did you mean \"roughness\"?",
+        ),
         ("[[material]]\nname = \"a\"\nkd = 1\n", "a.toml:7:1: unknown key \"kd\"; did you mean \"k_d\"?"),
         (
             "grid = { count = [1, 1, 1], spacin = [1, 1, 1] }\n",
@@ -139,7 +142,7 @@ fn settings_out_of_range_are_refused() {
         ("[film]\nfilter = { radius = 1 }", "a.toml:6:10: a filter needs the key \"type\""),
         (
             "[film]\nfilter = \"sinc\"",
-            "a.toml:6:10: \"filter\" must be \"box\", \"tent\", \"gaussian\", \"mitchell\" or a table, found the string \"sinc\"",
+            "a.toml:6:10: \"filter\" must be \"box\", \"tent\", \"gaussian\", \"mitchell\", \"catmull-rom\", \"blackman-harris\", \"lanczos\" or a table, found the string \"sinc\"",
         ),
         (
             "[film]\nfilter = { type = \"tent\", radius = 0 }",
@@ -194,7 +197,7 @@ fn materials_that_mean_nothing_are_refused() {
     let cases: &[(String, &str)] = &[
         (
             "model = \"cook-torrence\"".into(),
-            "a.toml:7:9: \"model\" must be \"lambert\", \"phong\", \"blinn-phong\", \"cook-torrance\", \"mirror\", \"dielectric\" or \"emissive\", found \"cook-torrence\"; did you mean \"cook-torrance\"?",
+            "a.toml:7:9: \"model\" must be \"lambert\", \"phong\", \"blinn-phong\", \"cook-torrance\", \"mirror\", \"dielectric\", \"emissive\", \"oren-nayar\", \"ward\", \"ashikhmin-shirley\", \"kelemen\", \"conductor\", \"rough-conductor\", \"rough-dielectric\", \"thin-dielectric\", \"plastic\", \"rough-plastic\", \"principled\", \"measured\", \"null\" or \"blend\", found \"cook-torrence\"; did you mean \"cook-torrance\"?",
         ),
         ("color = [1, 2, 3]".into(), "a.toml:7:9: \"color\" is a reflectance, at most 1, found 3"),
         ("color = \"octarine\"".into(), "a.toml:7:9: \"color\" must be a colour >= 0, found the string \"octarine\""),
@@ -307,11 +310,15 @@ fn shapes_that_have_no_surface_are_refused() {
     let cases: &[(&str, &str)] = &[
         (
             "shape = \"cube\"",
-            "a.toml:4:9: \"shape\" must be \"sphere\", \"quad\", \"box\", \"disk\", \"cylinder\", \"cone\", \"torus\", \"lathe\", \"teapot\", \"heightfield\" or \"mesh\", found \"cube\"",
+            "a.toml:4:9: \"shape\" must be \"sphere\", \"quad\", \"box\", \"disk\", \"cylinder\", \"cone\", \"torus\", \"lathe\", \"teapot\", \"heightfield\", \"terrain\", \"hairball\", \"sphereflake\", \"teapots\" or \"mesh\", found \"cube\"",
         ),
         (
             "shape = \"quad\"\nsize = [1, 2, 3]",
             "a.toml:5:8: \"size\" of this shape must be a number > 0 or 2 of them, found an array of 3",
+        ),
+        (
+            "shape = \"sphere\"\nshading = \"gouraud\"",
+            "a.toml:5:11: a sphere without \"segments\" has no triangles to shade flat or by Gouraud's method",
         ),
         (
             "shape = \"torus\"\nminor_radius = 2",
@@ -327,6 +334,11 @@ fn shapes_that_have_no_surface_are_refused() {
             "shape = \"teapot\"\nsegments = 500",
             "a.toml:5:12: \"segments\" of this shape must be an integer from 1 to 128, found 500",
         ),
+        (
+            "shape = \"terrain\"\ntriangles = 1",
+            "a.toml:5:13: \"triangles\" of this shape must be an integer from 2 to 33554432, found 1",
+        ),
+        ("shape = \"sphereflake\"\nlevel = 8", "a.toml:5:9: \"level\" must be an integer from 0 to 7, found 8"),
         ("shape = \"mesh\"", "a.toml:3:1: [[object]] needs the key \"file\""),
         (
             "shape = \"mesh\"\nfile = \"a.toml\"",

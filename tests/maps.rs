@@ -6,14 +6,15 @@ use common::*;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use gonio::bake::{BakeError, SceneData, bake};
 use gonio::layout::{
-    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, INVALID, Material as Record, PARAMETER_MASK, PARAMETER_METALLIC,
-    PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U, PARAMETER_ROUGHNESS_V, PARAMETER_WEIGHT, Ray,
-    T_INFINITE,
+    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, INVALID, Material as Record, PARAMETER_MASK,
+    PARAMETER_METALLIC, PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U, PARAMETER_ROUGHNESS_V,
+    PARAMETER_WEIGHT, Ray, T_INFINITE,
 };
 use gonio::scene::*;
 use gonio::shading::footprint::{Footprint, UvGradients, cone_footprint, mapped_normal, raised_normal};
 use gonio::shading::parameter::apply_parameter;
 use gonio::shading::pattern::{checker, fractal_noise, gradient_noise, square_mean, zone_plate};
+use gonio::shading::sampling::SampleKey;
 use gonio::shading::texture::{Detail, filter_texture, texture_detail};
 use gonio::trace::surface::{Surface, surface_at};
 use gonio::trace::tangent::{gradients_at, sphere_tangents};
@@ -40,7 +41,8 @@ fn textured(mesh: Option<Mesh>, transform: Transform, texture: Texture, paramete
     scene.objects = vec![object(geometry, transform)];
     scene.textures = vec![texture];
     scene.materials[0].color = Vec3::ONE;
-    scene.materials[0].textures = vec![TextureBinding { parameter, texture: TextureId(0), channel: Channel::Rgb, scale }];
+    scene.materials[0].textures =
+        vec![TextureBinding { parameter, texture: TextureId(0), channel: Channel::Rgb, scale }];
     bake(&scene).expect("bakes")
 }
 
@@ -55,8 +57,39 @@ fn seen(data: &SceneData, ray: &Ray) -> (Record, Surface, Surface) {
     assert_ne!(hit.instance, INVALID, "missed");
     let before = surface_at(&view, ray, &hit);
     let mut surface = before;
-    let material = material_at(&view, ray.direction, &hit, &mut surface);
+    let material = material_at(&view, ray.direction, &hit, key(0), &mut surface);
     (material, surface, before)
+}
+
+fn key(sample_index: u32) -> SampleKey {
+    SampleKey { seed: 3, pixel: 7, sample_index, path_id: 0, sampling: 2, strata: 1 }
+}
+
+#[test]
+fn a_texture_on_the_weight_of_a_blend_chooses_its_materials() {
+    let mut scene = scene_of(vec![square(|c| c)]);
+    let halves = TextureData::Float(Arc::new(vec![[0.0; 4], [0.5; 4]]));
+    scene.textures = vec![Texture { bilinear: false, ..Texture::new("halves", 2, 1, halves) }];
+    let blend = Model::Blend { weight: 1.0, a: MaterialId(1), b: MaterialId(2) };
+    let textures =
+        vec![TextureBinding { parameter: Parameter::Weight, texture: TextureId(0), channel: Channel::R, scale: 1.0 }];
+    let leaf = |x: f32| Material { color: Rgb::splat(x), ..Material::grey("leaf") };
+    scene.materials = vec![Material { model: blend, textures, ..Material::grey("blend") }, leaf(0.25), leaf(0.75)];
+    let data = bake(&scene).expect("bakes");
+    let view = data.view();
+    // On the left always the first; on the right each as often.
+    for (x, share) in [(-0.5, 0.0), (0.5, 0.5)] {
+        let ray = ray(Vec3::new(x, 0.1, 3.0), Vec3::NEG_Z);
+        let hit = trace_closest(&view, &ray);
+        let seconds = (0..4000).filter(|&index| {
+            let mut surface = surface_at(&view, &ray, &hit);
+            let material = material_at(&view, ray.direction, &hit, key(index), &mut surface);
+            assert_eq!(data.materials[surface.material as usize].color, material.color);
+            material.color.x == 0.75
+        });
+        let found = seconds.count() as f32 / 4000.0;
+        assert!((found - share).abs() < 0.04, "{found} of {share}");
+    }
 }
 
 /// All ways to stand, some of them mirrored.
@@ -175,7 +208,13 @@ fn the_tangents_of_a_sphere_are_the_derivatives_of_its_points() {
 fn gradients_tell_how_coordinates_change_over_a_step() {
     let mut random = Random::new(5);
     for transform in placements() {
-        let data = textured(Some(square(|c| Vec2::new(3.0 * c.x + c.y, c.y))), transform, constant([1.0; 4]), Parameter::Color, 1.0);
+        let data = textured(
+            Some(square(|c| Vec2::new(3.0 * c.x + c.y, c.y))),
+            transform,
+            constant([1.0; 4]),
+            Parameter::Color,
+            1.0,
+        );
         let view = data.view();
         let place = |p: Vec3| transform.0.transform_point3(p.as_dvec3()).as_vec3();
         for _ in 0..50 {
@@ -240,10 +279,10 @@ fn a_checkerboard_far_away_is_an_even_grey() {
     }
     // At the width of a texel and below, what is there.
     let point = Detail { spacing: Vec2::ZERO, width: 0.5, probes: 1 };
-    assert_eq!(filter_texture(&data.view(), &base, Vec2::new(1.5, 0.5) / 64.0, point).x, 1.0);
+    assert_eq!(filter_texture(&data.view(), &base, Vec2::splat(0.5) / 64.0, point).x, 1.0);
     // Half way from level 0 to level 1.
     let between = Detail { width: std::f32::consts::SQRT_2, ..point };
-    let texel = filter_texture(&data.view(), &base, Vec2::new(1.5, 0.5) / 64.0, between);
+    let texel = filter_texture(&data.view(), &base, Vec2::splat(0.5) / 64.0, between);
     assert!((texel.x - 0.75).abs() < 1e-6, "{texel}");
 }
 
@@ -343,7 +382,9 @@ fn a_zone_plate_has_the_frequency_of_its_radius() {
     assert_eq!(zone_plate(Vec2::ZERO), 1.0);
     // Phase r^2 / 2: from r = 10 to the next crest it is 1 / 10 of a unit, less half its square.
     let next = 102.0f32.sqrt();
-    assert!((zone_plate(Vec2::new(10.0, 0.0)) - 1.0).abs() < 1e-5 && (zone_plate(Vec2::new(0.0, next)) - 1.0).abs() < 1e-4);
+    assert!(
+        (zone_plate(Vec2::new(10.0, 0.0)) - 1.0).abs() < 1e-5 && (zone_plate(Vec2::new(0.0, next)) - 1.0).abs() < 1e-4
+    );
 }
 
 #[test]
@@ -358,7 +399,8 @@ fn each_parameter_takes_its_texture() {
     let eye = ray(Vec3::new(0.1, 0.2, 3.0), Vec3::NEG_Z);
     for (parameter, texel) in cases {
         let mut data = textured(Some(square(|c| c)), Transform::default(), constant(texel), parameter, 2.0);
-        let plain = Record { specular_color: Vec3::ONE, emission: Vec3::ONE, m0: 0.25, m1: 0.125, ..data.materials[0] };
+        let rough = Record { m0: 0.25, m1: 0.125, m0_v: 0.5, m1_v: 0.75, ..data.materials[0] };
+        let plain = Record { specular_color: Vec3::ONE, emission: Vec3::ONE, ..rough };
         data.materials[0] = plain;
         let (got, ..) = seen(&data, &eye);
         let mut want = plain;
@@ -390,8 +432,7 @@ fn each_parameter_takes_its_texture() {
 #[test]
 fn channels_are_told_apart() {
     let texel = Vec4::new(0.1, 0.2, 0.3, 0.4);
-    for (channel, want) in
-        [(CHANNEL_R, 0.1), (CHANNEL_G, 0.2), (CHANNEL_B, 0.3), (CHANNEL_A, 0.4), (CHANNEL_RGB, 0.2)]
+    for (channel, want) in [(CHANNEL_R, 0.1), (CHANNEL_G, 0.2), (CHANNEL_B, 0.3), (CHANNEL_A, 0.4), (CHANNEL_RGB, 0.2)]
     {
         assert_eq!(gonio::shading::parameter::channel_value(texel, channel).y, want);
     }

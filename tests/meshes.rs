@@ -179,6 +179,7 @@ fn staged(mesh: Mesh, transform: Transform) -> Scene {
         transform,
         material: Some(gonio::scene::MaterialId(0)),
         casts_shadow: None,
+        shading: None,
     });
     scene.meshes.push(mesh);
     staging::stage(&mut scene);

@@ -144,3 +144,27 @@ fn another_seed_is_another_picture() {
     let (other_scene, other_data) = first_light(Take { seed: 1, ..take });
     assert_same(&render_cpu(&scene, &data), &render_cpu(&other_scene, &other_data), "two seeds");
 }
+
+#[test]
+fn paths_of_any_length_are_the_same_on_cpu_and_device() {
+    let cornell = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell.toml");
+    let evening = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/evening.toml");
+    for (path, samples, max_depth, rr_depth) in
+        [(&cornell, 1, 64, 65), (&cornell, 4, 64, 5), (&cornell, 16, 2, 0), (&evening, 4, 64, 65), (&evening, 16, 1, 5)]
+    {
+        let mut scene = gonio::scene::load::load(path, &[]).unwrap();
+        (scene.film.width, scene.film.height) = (29, 23);
+        let settings = &mut scene.settings;
+        (settings.samples, settings.max_depth, settings.rr_depth) = (samples, max_depth, rr_depth);
+        settings.clamp = Some(20.0);
+        let data = gonio::bake::bake(&scene).unwrap();
+        let reference = render_cpu(&scene, &data);
+        for fetch in [FetchChoice::Texel, FetchChoice::Storage] {
+            // Chunks smaller than the picture put rays of all depths into one queue.
+            let options = VulkanOptions { fetch, chunk: Some(200), ..VulkanOptions::default() };
+            let Some(mut renderer) = vulkan(&data, options) else { return };
+            let film = render(&mut *renderer, &scene, &data, 0..samples);
+            assert_same(&reference, &film, &format!("{} {samples} {max_depth} {fetch:?}", path.display()));
+        }
+    }
+}

@@ -59,7 +59,8 @@ fn every_shipped_scene_loads_without_a_warning() {
             }
             let scene = load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
             assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-            assert!(!scene.objects.is_empty() && !scene.lights.is_empty(), "{}", path.display());
+            let traced = matches!(scene.settings.integrator, Integrator::Direct | Integrator::Path);
+            assert!(!scene.objects.is_empty() && (traced || !scene.lights.is_empty()), "{}", path.display());
             count += 1;
         }
     }
@@ -101,6 +102,7 @@ fn a_scene_without_settings_has_the_documented_defaults() {
         rr_depth: 5,
         clamp: None,
         shadows: true,
+        shading: Shading::Phong,
     };
     assert_eq!(scene.settings, settings);
     assert_eq!((scene.ambient, scene.background), (Rgb::ZERO, Background::BLACK));
@@ -115,9 +117,9 @@ fn a_scene_without_settings_has_the_documented_defaults() {
 fn render_film_and_background_keys_arrive() {
     let text = format!(
         "[render]\nintegrator = \"local\"\nsamples = 9\nseed = 4294967295\nsampler = \"stratified\"\nmax_depth = 3\n\
-         min_weight = 0.5\nrr_depth = 2\nclamp = 10\nshadows = false\nambient = [0.1, 0.2, 0.3]\n\
-         [film]\nsize = [3, 2]\nfilter = {{ type = \"gaussian\", radius = 2.5 }}\nunit = 0.25\ntonemap = \"reinhard\"\nexposure = -1\n\
-         [background]\nbottom = 0.5\ntop = \"white\"\n{LEAST}"
+         min_weight = 0.5\nrr_depth = 2\nclamp = 10\nshadows = false\nshading = \"gouraud\"\nambient = [0.1, 0.2, 0.3]\n\
+         [film]\nsize = [3, 2]\nfilter = {{ type = \"gaussian\", radius = 2.5 }}\nunit = 0.25\ntonemap = \"reinhard\"\nexposure = -1\ngamma = 2.2\n\
+         [background]\nbottom = 0.5\ntop = \"white\"\n{LEAST}segments = 8\nshading = \"flat\"\n"
     );
     let scene = read(&text, &[]);
     let settings = RenderSettings {
@@ -130,8 +132,10 @@ fn render_film_and_background_keys_arrive() {
         rr_depth: 2,
         clamp: Some(10.0),
         shadows: false,
+        shading: Shading::Gouraud,
     };
     assert_eq!(scene.settings, settings);
+    assert_eq!(scene.objects[0].shading, Some(Shading::Flat));
     let film = Film {
         width: 3,
         height: 2,
@@ -139,6 +143,7 @@ fn render_film_and_background_keys_arrive() {
         unit_exponent: -2,
         tonemap: ToneMap::Reinhard,
         exposure: -1.0,
+        gamma: Some(2.2),
     };
     assert_eq!(scene.film, film);
     assert_eq!(scene.ambient, Rgb::new(0.1, 0.2, 0.3));
@@ -306,6 +311,20 @@ fn every_shape_has_the_size_that_its_keys_say() {
     let ball = read("[camera]\neye = [0, 0, 9]\n[[object]]\nshape = \"sphere\"\nradius = 3\n", &[]);
     assert_eq!(ball.objects[0].geometry, Geometry::Sphere, "without segments a sphere is exact");
     assert!(close(placed(&ball.objects[0], [1.0, 0.0, 0.0]), [3.0, 0.0, 0.0]));
+}
+
+#[test]
+fn shapes_of_any_size_have_about_as_many_triangles_as_they_say() {
+    let shape = |keys: &str| read(&format!("[camera]\neye = [0, 0, 9]\n[[object]]\n{keys}\n"), &[]);
+    assert_eq!(shape("shape = \"terrain\"\ntriangles = 800").meshes[0].triangles.len(), 800);
+    assert_eq!(shape("shape = \"hairball\"\ntriangles = 960").meshes[0].triangles.len(), 960);
+    let flake = shape("shape = \"sphereflake\"\nlevel = 1\nscale = 3\ntranslate = [1, 0, 0]");
+    assert_eq!((flake.objects.len(), flake.meshes.len()), (10, 0), "spheres are exact");
+    assert!(flake.objects.iter().all(|object| object.geometry == Geometry::Sphere));
+    assert!(close(placed(&flake.objects[0], [1.0, 0.0, 0.0]), [4.0, 0.0, 0.0]));
+    assert!(close(placed(&flake.objects[1], [0.0, 0.0, 0.0]), [5.0, 0.0, 0.0]), "it touches the first along x");
+    let field = shape("shape = \"teapots\"\ntriangles = 20000");
+    assert_eq!((field.objects.len(), field.meshes.len()), (5, 1), "one teapot, placed five times");
 }
 
 #[test]

@@ -117,6 +117,7 @@ fn film(scene: &Scene, data: &SceneData, crop: Rect) -> Film {
         aovs: data.header.aovs != 0,
         tonemap: scene.film.tonemap,
         exposure: 0.0,
+        gamma: None,
     })
 }
 

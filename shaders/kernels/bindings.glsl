@@ -28,6 +28,16 @@ layout(constant_id = 8) const uint SCENE_SAMPLING = SAMPLER_SOBOL;
 layout(constant_id = 9) const uint SCENE_FILTER = FILTER_BOX;
 layout(constant_id = 10) const bool SCENE_HAS_SPHERES = true;
 layout(constant_id = 11) const bool SCENE_HAS_AOVS = true;
+// Bit n: the scene has an emitter of kind EMITTER_* n.
+layout(constant_id = 12) const uint EMITTERS_PRESENT = 0xffffffffu;
+#define HAS_EMITTER(kind) ((EMITTERS_PRESENT & (1u << (kind))) != 0u)
+layout(constant_id = 13) const bool SCENE_HAS_TEXTURED_EMITTERS = true;
+layout(constant_id = 14) const bool SCENE_HAS_ENVIRONMENT_MAP = true;
+layout(constant_id = 15) const bool SCENE_HAS_PANES = true;
+layout(constant_id = 16) const bool SCENE_HAS_ABSORPTION = true;
+// Objects shaded flat or by Gouraud's method.
+layout(constant_id = 17) const bool SCENE_HAS_FACETS = true;
+layout(constant_id = 18) const bool SCENE_HAS_TEXTURES = true;
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };

@@ -93,6 +93,10 @@ const uint KIND_SPHERE = 1u;
 const uint INSTANCE_NO_SHADOW = 1u;
 // Instance flag: the transform mirrors (negative determinant), so winding is reversed in world space.
 const uint INSTANCE_MIRRORED = 2u;
+// Instance flag: its triangles are shaded at their centroid (row 8).
+const uint INSTANCE_FLAT = 4u;
+// Instance flag: its triangles are shaded at their corners (row 8).
+const uint INSTANCE_GOURAUD = 8u;
 
 // One placed object. 128 bytes. Matrices are three rows of four: `p' = (dot(row_i.xyz, p) + row_i.w)`.
 struct Instance {

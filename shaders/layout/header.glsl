@@ -83,8 +83,9 @@ struct SceneHeader {
     float clamp;
     // Levels of pending rays: one per depth where rays branch, else one.
     uint level_count;
+    // 1 if a ray that has left a surface can meet light: something glows or surrounds the scene (path).
+    uint glows;
     uint pad0;
-    uint pad1;
 };
 
 // Intervals in the tabulated filter's inverse CDF.

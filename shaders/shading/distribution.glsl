@@ -179,7 +179,7 @@ vec3 sample_visible(uint kind, float alpha_u, float alpha_v, vec3 wo, vec2 u) {
         float radius = sqrt_(u.x);
         float t1 = radius * cos_turns(u.y);
         float t2 = radius * sin_turns(u.y);
-        float s = 0.5 * (1.0 + view.z);
+        float s = view.z * 0.5 + 0.5;
         t2 = (1.0 - s) * sqrt_(max_(1.0 - t1 * t1, 0.0)) + s * t2;
         float t3 = sqrt_(max_((1.0 - t1 * t1) - t2 * t2, 0.0));
         // section 4.3: back onto the hemisphere, T1 = (-sin, cos, 0), T2 = view x T1

@@ -18,9 +18,11 @@
 #include "shading/lambert.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
+#include "shading/measured.glsl"
 #include "shading/oren_nayar.glsl"
 #include "shading/phong.glsl"
 #include "shading/plastic.glsl"
+#include "shading/principled.glsl"
 #include "shading/rough_conductor.glsl"
 #include "shading/rough_dielectric.glsl"
 #include "shading/spectrum.glsl"
@@ -48,6 +50,8 @@ Spectrum eval_material(Material material, vec3 wo, vec3 wi) {
     ARM(MODEL_ROUGH_DIELECTRIC, eval_rough_dielectric(material, wo, wi))
     ARM(MODEL_PLASTIC, eval_plastic(material, wo, wi))
     ARM(MODEL_ROUGH_PLASTIC, eval_rough_plastic(material, wo, wi))
+    ARM(MODEL_PRINCIPLED, eval_principled(material, wo, wi))
+    ARM(MODEL_MEASURED, eval_measured(material, wo, wi))
     default: break;
     }
     return spectrum_zero();
@@ -68,6 +72,8 @@ float pdf_material(Material material, vec3 wo, vec3 wi) {
     ARM(MODEL_ROUGH_DIELECTRIC, pdf_rough_dielectric(material, wo, wi))
     ARM(MODEL_PLASTIC, pdf_plastic(material, wo, wi))
     ARM(MODEL_ROUGH_PLASTIC, pdf_rough_plastic(material, wo, wi))
+    ARM(MODEL_PRINCIPLED, pdf_principled(material, wo, wi))
+    ARM(MODEL_MEASURED, pdf_measured(material, wo, wi))
     default: break;
     }
     return 0.0;
@@ -86,6 +92,7 @@ DirectionSample sample_direction(Material material, vec3 wo, vec2 u, float u_lob
     ARM(MODEL_KELEMEN, sample_kelemen(material, wo, u, u_lobe))
     ARM(MODEL_ROUGH_CONDUCTOR, sample_rough_conductor(material, wo, u, u_lobe))
     ARM(MODEL_ROUGH_PLASTIC, sample_rough_plastic(material, wo, u, u_lobe))
+    ARM(MODEL_MEASURED, sample_measured(material, wo, u, u_lobe))
     default: break;
     }
     return no_direction();
@@ -101,6 +108,7 @@ BsdfSample sample_material(Material material, vec3 wo, vec2 u, float u_lobe) {
     ARM(MODEL_ROUGH_DIELECTRIC, sample_rough_dielectric(material, wo, u, u_lobe))
     ARM(MODEL_THIN_DIELECTRIC, sample_thin_dielectric(material, wo, u_lobe))
     ARM(MODEL_PLASTIC, sample_plastic(material, wo, u, u_lobe))
+    ARM(MODEL_PRINCIPLED, sample_principled(material, wo, u, u_lobe))
     ARM(MODEL_NULL, sample_null(wo))
     default: break;
     }
@@ -151,6 +159,11 @@ Spectrum mirror_weight(Material material, float cos_o) {
 vec3 emission_material(Material material) {
     vec3 shown = material.model == MODEL_EMISSIVE ? material.color : vec3(0.0);
     return material.emission + shown;
+}
+
+// How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
+float own_weight(Material material) {
+    return (material.flags & MATERIAL_FILTERED) != 0u ? 1.0 : 1.0 - material.k_t;
 }
 
 // Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) where there is an interface.

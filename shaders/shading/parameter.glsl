@@ -25,6 +25,8 @@ vec3 channel_value(vec4 texel, uint channel) {
 Material apply_parameter(Material material, uint parameter, vec3 texel, float scale) {
     Material result = material;
     vec3 value = texel * scale;
+    // k_t is what is not covered.
+    float covered = 1.0 - material.k_t;
     switch (parameter) {
     case PARAMETER_COLOR: result.color *= value; break;
     case PARAMETER_SPECULAR_COLOR: result.specular_color *= value; break;
@@ -43,9 +45,8 @@ Material apply_parameter(Material material, uint parameter, vec3 texel, float sc
         break;
     case PARAMETER_METALLIC:
     case PARAMETER_WEIGHT: result.extra = clamp_(material.extra * value.x, 0.0, 1.0); break;
-    // k_t is what is not covered.
-    case PARAMETER_OPACITY: result.k_t = 1.0 - (1.0 - material.k_t) * clamp_(value.x, 0.0, 1.0); break;
-    case PARAMETER_MASK: result.k_t = (1.0 - material.k_t) * texel.x >= scale ? 0.0 : 1.0; break;
+    case PARAMETER_OPACITY: result.k_t = 1.0 - covered * clamp_(value.x, 0.0, 1.0); break;
+    case PARAMETER_MASK: result.k_t = covered * texel.x >= scale ? 0.0 : 1.0; break;
     // Normal and bump maps.
     default: break;
     }

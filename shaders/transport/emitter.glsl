@@ -25,43 +25,45 @@ uint choose_emitter(vec2 u) {
 }
 
 // Radiance of the point of a textured emitter that `lit` was drawn to from `position` with `u`.
-Spectrum textured_radiance(Emitter emitter, vec3 position, vec2 u, LightSample lit) {
+Spectrum textured_radiance(Emitter emitter, SampleKey key, vec3 position, vec2 u, LightSample lit) {
     vec2 b = square_to_uniform_triangle(u);
     Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0.0, 0.0);
     Hit hit = Hit(lit.distance, b.x, b.y, emitter.instance, emitter.primitive, 0u, 0u, 0u);
     Surface surface = surface_at(ray, hit);
-    return spectrum_from_rgb(emission_material(material_at(lit.wi, hit, surface)));
+    Material material = material_at(lit.wi, hit, key, surface);
+    return spectrum_from_rgb(emission_material(material) * own_weight(material));
 }
 
-// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1.
-LightSample sample_emitter(Emitter emitter, Surface surface, vec2 u) {
+// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1. `key`: of the
+// path.
+LightSample sample_emitter(Emitter emitter, SampleKey key, Surface surface, vec2 u) {
     vec3 position = surface.position;
-    if (emitter.kind == EMITTER_ENVIRONMENT) {
+    if (HAS_EMITTER(EMITTER_ENVIRONMENT) && emitter.kind == EMITTER_ENVIRONMENT) {
         EnvironmentSample seen = sample_environment(u);
         float pdf = emitter.density * seen.pdf_solid_angle;
         Spectrum radiance = spectrum_from_rgb(seen.radiance) * rcp(pdf);
         return LightSample(seen.wi, T_INFINITE, radiance, pdf);
     }
-    if (emitter.kind == EMITTER_LIGHT) {
+    if (HAS_EMITTER(EMITTER_LIGHT) && emitter.kind == EMITTER_LIGHT) {
         LightSample lit = sample_light(load_light(emitter.instance), position);
         lit.radiance *= rcp(emitter.density);
         return lit;
     }
     LightSample lit = no_light();
-    if (emitter.kind == EMITTER_SPHERE) {
+    if (HAS_EMITTER(EMITTER_SPHERE) && emitter.kind == EMITTER_SPHERE) {
         lit = sample_sphere_light(emitter, load_instance(emitter.instance), position, u);
     } else if (emitter.instance != surface.instance || emitter.primitive != surface.primitive) {
         lit = sample_triangle_light(emitter, position, u);
     }
-    if ((emitter.flags & EMITTER_TEXTURED) != 0u && lit.pdf_solid_angle > 0.0) {
-        lit.radiance = textured_radiance(emitter, position, u, lit) * rcp(lit.pdf_solid_angle);
+    if (SCENE_HAS_TEXTURED_EMITTERS && (emitter.flags & EMITTER_TEXTURED) != 0u && lit.pdf_solid_angle > 0.0) {
+        lit.radiance = textured_radiance(emitter, key, position, u, lit) * rcp(lit.pdf_solid_angle);
     }
     return lit;
 }
 
 // Whether shadow rays are traced for an emitter.
 bool casts_shadow(Emitter emitter) {
-    return emitter.kind != EMITTER_LIGHT || load_light(emitter.instance).casts_shadow != 0u;
+    return !HAS_EMITTER(EMITTER_LIGHT) || emitter.kind != EMITTER_LIGHT || load_light(emitter.instance).casts_shadow != 0u;
 }
 
 // Density per solid angle with which `sample_emitter`, its choice included, would have drawn the direction of a ray that
@@ -69,9 +71,10 @@ bool casts_shadow(Emitter emitter) {
 float pdf_emitter(vec3 origin, vec3 direction, float t, Surface surface) {
     Instance instance = load_instance(surface.instance);
     // Without textures: what bake made the choice by.
-    float luminance = spectrum_luminance(spectrum_from_rgb(emission_material(load_material(surface.material))));
-    float density = instance.light_density * luminance;
-    if (surface.kind == KIND_SPHERE) {
+    Material material = load_material(surface.material);
+    Spectrum shown = spectrum_from_rgb(emission_material(material) * own_weight(material));
+    float density = instance.light_density * spectrum_luminance(shown);
+    if (HAS_EMITTER(EMITTER_SPHERE) && surface.kind == KIND_SPHERE) {
         vec3 along = transform_vector(instance.to_object, direction);
         vec3 start = transform_point(instance.to_object, origin);
         return (density * sphere_pdf(start, along * t)) * solid_angle_ratio(instance, along);

@@ -17,6 +17,21 @@ const float COS_VIEW_MIN = 1.0e-3;
 // A shadow ray ends this fraction short of its light, so that a lamp's own glass does not hide it.
 const float SHADOW_END = 0.9999;
 
+// Where a hit is shaded: at itself, or where `faceted` puts it.
+struct ShadingPoint {
+    Surface surface;
+    // Where on its triangle that is.
+    Hit hit;
+    // Where its shadow rays start.
+    Surface shadow_from;
+    // Unit, to the viewer.
+    vec3 wo;
+    // Part of the hit's radiance that it stands for, 0..1.
+    float share;
+    // Keeps the dither of several points apart.
+    uint dither;
+};
+
 // The shading normal a viewer at `wo` sees: on the viewer's side of the surface (both sides are shaded alike), and
 // bent towards the viewer where interpolation has turned it away.
 vec3 facing_normal(Surface surface, vec3 wo) {
@@ -54,21 +69,17 @@ vec3 emitted(Surface surface, Material material, vec3 wo) {
     return emission_material(material);
 }
 
-// How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
-float own_weight(Material material) {
-    return (material.flags & MATERIAL_FILTERED) != 0u ? 1.0 : 1.0 - material.k_t;
-}
-
 // What the surface adds for one light, before any shadow: throughput * eval * radiance.
 Spectrum light_contribution(Spectrum weight, Material material, Frame frame, vec3 wo, vec3 wi, Spectrum radiance) {
     return weight * eval_material(material, to_local(frame, wo), to_local(frame, wi)) * radiance;
 }
 
-// Adds emission, ambient and every light's share of the surface, and lets the ray go on through a pane.
+// Adds emission, ambient and every light's share of the surface, as seen from `point.wo`.
 // `key`: of the path. Directions in world space. Radiance along the ray's way back.
-void shade_local(PathState path, SampleKey key, Surface surface, Material material) {
-    vec3 wo = -path.ray.direction;
-    Spectrum weight = path.throughput * own_weight(material);
+void shade_local(PathState path, SampleKey key, ShadingPoint point, Material material) {
+    Surface surface = point.surface;
+    vec3 wo = point.wo;
+    Spectrum weight = path.throughput * (own_weight(material) * point.share);
     bool hidden = is_hidden_back(surface, material, wo);
     Spectrum reflected = spectrum_from_rgb(header.ambient) * ambient_material(material);
     if (hidden) {
@@ -76,8 +87,8 @@ void shade_local(PathState path, SampleKey key, Surface surface, Material materi
     }
     Spectrum own = weight * (reflected + spectrum_from_rgb(emitted(surface, material, wo)));
     // A mirror or a glass covers the background like anything else.
-    float alpha = path.coverage * (1.0 - material.k_t);
-    uint dither = dither_hash(key, DITHER_SURFACE);
+    float alpha = path.coverage * ((1.0 - material.k_t) * point.share);
+    uint dither = dither_hash(key, DITHER_SURFACE + point.dither);
     add_contribution(header.film_scale, path.slot, vec4(own.x, own.y, own.z, alpha), dither);
 
     if (!is_delta(material) && !hidden) {
@@ -88,9 +99,9 @@ void shade_local(PathState path, SampleKey key, Surface surface, Material materi
             Spectrum seen = light_contribution(weight, material, frame, wo, lit.wi, lit.radiance);
             if (spectrum_max(seen) > 0.0) {
                 vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
-                uint light_dither = dither_hash(key, DITHER_LIGHT + index);
+                uint light_dither = dither_hash(key, (DITHER_LIGHT + point.dither) + index);
                 if (header.shadows != 0u && light.casts_shadow != 0u) {
-                    Ray ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
+                    Ray ray = spawn_ray(point.shadow_from, lit.wi, lit.distance * SHADOW_END);
                     push_shadow(ShadowRay(ray, contribution, path.slot, light_dither, 0u, 0u));
                 } else {
                     add_contribution(header.film_scale, path.slot, contribution, light_dither);
@@ -98,8 +109,11 @@ void shade_local(PathState path, SampleKey key, Surface surface, Material materi
             }
         }
     }
+}
 
-    if (material.k_t > 0.0) {
+// Lets the ray go on through a pane.
+void shade_through(PathState path, Surface surface, Material material) {
+    if (SCENE_HAS_PANES && material.k_t > 0.0) {
         vec4 tint = vec4(material.k_t);
         if ((material.flags & MATERIAL_FILTERED) != 0u) {
             tint *= spectrum_from_rgb(material.transmit_color);

@@ -13,10 +13,13 @@ const uint DIMENSION_BSDF = 18u;
 const uint DIMENSION_LOBE = 19u;
 const uint DIMENSION_ROULETTE = 20u;
 const uint DIMENSION_PANE = 21u;
+const uint DIMENSION_LEAF = 32u;
 // Dither of contributions: emission and ambient, background, alpha; light i takes `DITHER_LIGHT + i`.
 const uint DITHER_SURFACE = 0x10000000u;
 const uint DITHER_BACKGROUND = 0x10000001u;
 const uint DITHER_LIGHT = 0x20000000u;
+// Added to both for each further point at which one hit is shaded.
+const uint DITHER_CORNER = 0x04000000u;
 
 // Branches of a path: hashed into the child's path id.
 const uint LOBE_THROUGH = 1u;

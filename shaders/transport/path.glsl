@@ -40,7 +40,7 @@ void shade_escape(PathState path, SampleKey key) {
         return;
     }
     float weight = 1.0;
-    if (path.pdf > 0.0) {
+    if (HAS_EMITTER(EMITTER_ENVIRONMENT) && path.pdf > 0.0) {
         float sampled = header.environment_density * pdf_environment(path.ray.direction);
         weight = power_heuristic(path.pdf, sampled);
     }
@@ -60,7 +60,7 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
     if (emitter.kind != EMITTER_LIGHT) {
         u = sample_2d(key, DIMENSION_LIGHT);
     }
-    LightSample lit = sample_emitter(emitter, surface, u);
+    LightSample lit = sample_emitter(emitter, key, surface, u);
     vec3 wo_local = to_local(frame, wo);
     vec3 wi_local = to_local(frame, lit.wi);
     if (spectrum_max(lit.radiance) <= 0.0 || !consistent(surface, wo, lit.wi, wo_local, wi_local)) {
@@ -87,6 +87,10 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
 
 // Lets the path go on into a direction of the surface.
 void scatter(PathState path, SampleKey key, Surface surface, Material material, Frame frame, vec3 wo) {
+    // The last ray can only meet what glows.
+    if (header.glows == 0u && path.depth + 1u >= header.max_depth) {
+        return;
+    }
     vec3 wo_local = to_local(frame, wo);
     float u_lobe = sample_1d(key, DIMENSION_LOBE);
     BsdfSample bsdf = sample_material(material, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
@@ -100,7 +104,7 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
     next.path_id = hash_combine(path.path_id, LOBE_SCATTER);
     next.coverage = 0.0;
     next.pdf = (bsdf.flags & SAMPLE_DELTA) != 0u ? 0.0 : bsdf.pdf;
-    if ((bsdf.flags & SAMPLE_TRANSMIT) != 0u) {
+    if ((bsdf.flags & SAMPLE_TRANSMIT) != 0u && material.model != MODEL_THIN_DIELECTRIC) {
         next.eta = path.eta * bsdf.eta;
         next.absorption = bsdf.wi.z < 0.0 ? material.absorption : vec3(0.0);
     }
@@ -123,7 +127,7 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
 void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Material material) {
     PathState path = incoming;
     vec3 direction = path.ray.direction;
-    if (material.k_t > 0.0) {
+    if (SCENE_HAS_PANES && material.k_t > 0.0) {
         float own = own_weight(material);
         vec4 tint = vec4(material.k_t);
         if ((material.flags & MATERIAL_FILTERED) != 0u) {

@@ -8,6 +8,7 @@
 #include "shading/sampling.glsl"
 #include "shading/spectrum.glsl"
 #include "trace/surface.glsl"
+#include "transport/faceted.glsl"
 #include "transport/generate.glsl"
 #include "transport/local.glsl"
 #include "transport/path.glsl"
@@ -24,7 +25,7 @@ void shade(PathState incoming, Hit hit) {
     SampleKey key = sample_key(path.pixel, path.sample_index, path.path_id);
     if (hit.instance == INVALID) {
         if (!(straight && header.hide_background != 0u)) {
-            if (header.integrator == INTEGRATOR_PATH) {
+            if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
                 shade_escape(path, key);
                 return;
             }
@@ -35,22 +36,34 @@ void shade(PathState incoming, Hit hit) {
         return;
     }
     // Light through a medium: Beer's law over the way just travelled (the direction is unit).
-    path.throughput *= transmittance(path.absorption, hit.t);
+    if (SCENE_HAS_ABSORPTION) {
+        path.throughput *= transmittance(path.absorption, hit.t);
+    }
     if (spectrum_max(path.throughput) < THROUGHPUT_MIN) {
         return;
     }
     Surface surface = surface_at(path.ray, hit);
-    Material material = material_at(path.ray.direction, hit, surface);
+    uint named = surface.material;
+    Material material = material_at(path.ray.direction, hit, key, surface);
     if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
-        add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
+        add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
-    if (header.integrator == INTEGRATOR_PATH) {
+    if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
         shade_path(path, key, hit, surface, material);
         return;
     }
-    shade_local(path, key, surface, material);
+    uint flags = SCENE_HAS_FACETS && SCENE_INTEGRATOR == INTEGRATOR_LOCAL ? load_instance(hit.instance).flags : 0u;
+    for (uint index = 0u; index < shading_points(flags); index++) {
+        ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
+        Material material_there = material;
+        if (faceted(flags)) {
+            material_there = material_at(-point.wo, point.hit, key, point.surface);
+        }
+        shade_local(path, key, point, material_there);
+    }
+    shade_through(path, surface, material);
     if (SCENE_INTEGRATOR == INTEGRATOR_WHITTED && path.depth < header.max_depth) {
         shade_whitted(path, surface, material);
     }

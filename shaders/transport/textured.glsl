@@ -7,17 +7,17 @@
 #include "shading/footprint.glsl"
 #include "shading/math.glsl"
 #include "shading/parameter.glsl"
+#include "shading/sampling.glsl"
 #include "shading/texture.glsl"
 #include "trace/surface.glsl"
 #include "trace/tangent.glsl"
+#include "transport/mod.glsl"
 
-// The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour; a normal or
-// bump map turns `surface.normal`. The textures are read by one loop with one place that fetches, as each place is
-// inlined and costs compile time; a material without them pays a comparison.
-Material material_at(vec3 direction, Hit hit, inout Surface surface) {
-    Material material = load_material(surface.material);
-    material.color *= surface.color;
-    if (material.texture_count == 0u) {
+// `bare` with its textures applied, at `surface`, found for `hit` along `direction` (unit); a normal or bump map turns
+// `surface.normal`. One loop with one place that fetches, as each place is inlined and costs compile time.
+Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface surface) {
+    Material material = bare;
+    if (!SCENE_HAS_TEXTURES || material.texture_count == 0u) {
         return material;
     }
     UvGradients gradients = gradients_at(surface, hit);
@@ -56,6 +56,36 @@ Material material_at(vec3 direction, Hit hit, inout Surface surface) {
         } else {
             material = apply_parameter(material, texture_record.parameter, value, texture_record.scale);
         }
+    }
+    return material;
+}
+
+// The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour. Of a blend it is
+// one that is none, drawn by the weights, (1 - extra) of the first and extra of the second; `surface.material` names it.
+// `key`: of the path, which meets one surface at most.
+Material material_at(vec3 direction, Hit hit, SampleKey key, inout Surface surface) {
+    Material material = load_material(surface.material);
+    if (!HAS_MODEL(MODEL_BLEND)) {
+        material.color *= surface.color;
+        return apply_textures(material, direction, hit, surface);
+    }
+    float u = 0.0;
+    if (material.model == MODEL_BLEND) {
+        u = sample_1d(key, DIMENSION_LEAF);
+    }
+    for (uint level = 0u; level < MAX_LEAVES; level++) {
+        material.color *= surface.color;
+        material = apply_textures(material, direction, hit, surface);
+        // Bake lets no blend be deeper.
+        if (material.model != MODEL_BLEND || level + 1u == MAX_LEAVES) {
+            break;
+        }
+        float weight = clamp_(material.extra, 0.0, 1.0);
+        bool second = u < weight;
+        // What is left of u is as random again.
+        u = second ? div(u, weight) : div(u - weight, 1.0 - weight);
+        surface.material = second ? material.table + 1u : material.table;
+        material = load_material(surface.material);
     }
     return material;
 }

@@ -67,9 +67,7 @@ void shade_whitted(PathState path, Surface surface, Material material) {
     vec3 wo_local = to_local(frame, wo);
     bool thin = material.model == MODEL_THIN_DIELECTRIC;
     float reflectance = thin ? thin_reflectance(wo_local.z, material.eta.x) : fresnel_dielectric(wo_local.z, eta);
-    vec3 tint = material.color * reflectance;
-    vec4 mirrored = vec4(tint.x, tint.y, tint.z, reflectance);
-    push_branch(path, surface, mirror_direction(surface, wo), mirrored, LOBE_MIRROR);
+    push_branch(path, surface, mirror_direction(surface, wo), vec4(reflectance), LOBE_MIRROR);
     Spectrum weight = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
     if (thin) {
         push_branch(path, surface, path.ray.direction, weight, LOBE_REFRACT);

@@ -60,7 +60,8 @@ fn tabulate(anisotropic: bool, value: impl Fn(Vec3, Vec2) -> f64 + Sync) -> Vec<
             let wo = Vec3::new((sin * libm::cos(phi)) as f32, (sin * libm::sin(phi)) as f32, cos as f32);
             for i in 0..count {
                 let u = (f64::from(i) + 0.5) / f64::from(count);
-                let v = f64::from((u64::from(i) * u64::from(step) % u64::from(count)) as u32) / f64::from(count);
+                let v =
+                    (f64::from((u64::from(i) * u64::from(step) % u64::from(count)) as u32) + 0.5) / f64::from(count);
                 sum += value(wo, Vec2::new(u as f32, v as f32));
             }
         }
@@ -160,8 +161,7 @@ pub fn conductor_table(material: &mut Material, tables: &mut Vec<f32>) {
     });
     header[2] = mean(&table) as f32;
     for channel in 0..3 {
-        header[3 + channel] =
-            cosine_mean(|mu| f64::from(fresnel_material(material, mu as f32)[channel])) as f32;
+        header[3 + channel] = cosine_mean(|mu| f64::from(fresnel_material(material, mu as f32)[channel])) as f32;
     }
     finish(material, &header, &table, tables);
 }

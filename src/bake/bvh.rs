@@ -4,13 +4,15 @@
 //! here from the exact bounds of what lies below, and a tree too deep for the traversal stack is replaced by a
 //! median split.
 
+use super::wide::widen;
 use crate::layout::{Node, STACK_SIZE};
 use glam::{DVec3, Vec3};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::ploc::PlocBuilder;
+use rayon::prelude::*;
+use std::time::Instant;
 
 /// Primitives in a leaf of a mesh; the node format has room for three.
 pub const MESH_LEAF: u32 = 3;
@@ -48,12 +50,12 @@ impl Bounds {
 
 /// One node without its boxes. Inner children lie side by side from `child_base`, in the order of their slots.
 #[derive(Clone, Copy, Debug, Default)]
-struct TreeNode {
-    child_base: u32,
-    primitive_base: u32,
-    inner_mask: u8,
+pub(super) struct TreeNode {
+    pub child_base: u32,
+    pub primitive_base: u32,
+    pub inner_mask: u8,
     /// As `Node::child_meta`.
-    meta: [u8; 8],
+    pub meta: [u8; 8],
 }
 
 /// What a slot of a node holds.
@@ -90,6 +92,8 @@ pub struct Tree {
     nodes: Vec<TreeNode>,
     /// Which primitive stands at each place of the traversal order.
     pub order: Vec<u32>,
+    /// Seconds that its binary tree and the conversion took.
+    pub seconds: [f64; 2],
 }
 
 impl Tree {
@@ -107,7 +111,8 @@ impl Tree {
     fn by_surface_area(boxes: &[Bounds], leaf: u32) -> Self {
         let boxes: Vec<Aabb> = boxes.iter().map(|b| Aabb::new(b.min.into(), b.max.into())).collect();
         let preset = BvhBuildParams::medium_build();
-        // The steps of obvhs's `build_cwbvh` but for its debug validation, which panics on deep trees.
+        let start = Instant::now();
+        // The steps of obvhs's `build_cwbvh` up to the binary tree.
         let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
             preset.ploc_search_distance,
             &boxes,
@@ -116,24 +121,17 @@ impl Tree {
             preset.search_depth_threshold,
         );
         ReinsertionOptimizer::default().run(&mut binary, preset.reinsertion_batch_ratio, None);
-        let wide = bvh2_to_cwbvh(&binary, leaf, true, false);
-        let nodes = wide
-            .nodes
-            .iter()
-            .map(|n| TreeNode {
-                child_base: n.child_base_idx,
-                primitive_base: n.primitive_base_idx,
-                inner_mask: n.imask,
-                meta: n.child_meta,
-            })
-            .collect();
-        Self { nodes, order: wide.primitive_indices }
+        let binary_s = start.elapsed().as_secs_f64();
+        let (nodes, order) = widen(&binary, leaf);
+        let wide_s = start.elapsed().as_secs_f64() - binary_s;
+        Self { nodes, order, seconds: [binary_s, wide_s] }
     }
 
     /// A tree of the least depth: each node halves its largest part, by the median along its longest axis, until it
     /// has eight.
     fn median_split(boxes: &[Bounds], leaf: u32) -> Self {
-        let mut tree = Self { nodes: vec![TreeNode::default()], order: Vec::with_capacity(boxes.len()) };
+        let mut tree =
+            Self { nodes: vec![TreeNode::default()], order: Vec::with_capacity(boxes.len()), seconds: [0.0; 2] };
         let mut waiting = vec![(0usize, (0..boxes.len() as u32).collect::<Vec<u32>>())];
         while let Some((index, primitives)) = waiting.pop() {
             let mut parts = vec![primitives];
@@ -145,7 +143,9 @@ impl Tree {
                 let half = halve(&mut parts[largest], boxes);
                 parts.push(half);
             }
-            let slots = octant_slots(&parts, boxes);
+            let bounds: Vec<Bounds> = parts.iter().map(|part| bounds_of(part, boxes)).collect();
+            let centres: Vec<DVec3> = bounds.iter().map(Bounds::centre).collect();
+            let slots = octant_slots(&centres, bounds.iter().fold(Bounds::EMPTY, |b, &c| b.union(c)).centre());
             let mut node = TreeNode {
                 child_base: tree.nodes.len() as u32,
                 primitive_base: tree.order.len() as u32,
@@ -208,7 +208,7 @@ impl Tree {
         let pack_one = |(index, node): (usize, &TreeNode)| {
             pack_node(node, &bounds[index], &child_bounds[index], node_base, primitive_base)
         };
-        self.nodes.iter().enumerate().map(pack_one).collect()
+        self.nodes.par_iter().enumerate().map(pack_one).collect()
     }
 }
 
@@ -225,25 +225,29 @@ fn halve(part: &mut Vec<u32>, boxes: &[Bounds]) -> Vec<u32> {
     part.split_off(middle)
 }
 
-/// The slot of each part such that slot xor octant is a near-to-far order (Ylitie et al. 2017, section 3.2, greedily):
-/// bits 4, 2, 1 of a slot stand for the positive side in x, y, z.
-fn octant_slots(parts: &[Vec<u32>], boxes: &[Bounds]) -> Vec<usize> {
-    let bounds = |part: &Vec<u32>| part.iter().fold(Bounds::EMPTY, |b, &p| b.union(boxes[p as usize]));
-    let centres: Vec<DVec3> = parts.iter().map(|part| bounds(part).centre()).collect();
-    let middle = parts.iter().map(bounds).fold(Bounds::EMPTY, Bounds::union).centre();
-    let mut wishes = Vec::with_capacity(parts.len() * 8);
-    for (part, &centre) in centres.iter().enumerate() {
-        for slot in 0..8usize {
+fn bounds_of(part: &[u32], boxes: &[Bounds]) -> Bounds {
+    part.iter().fold(Bounds::EMPTY, |b, &p| b.union(boxes[p as usize]))
+}
+
+/// The slot of each child, 8 at most, such that slot xor octant is a near-to-far order (Ylitie et al. 2017, section 3.2,
+/// greedily): bits 4, 2, 1 of a slot stand for the positive side in x, y, z. `centres`, `middle`: of the children's boxes
+/// and of the box around all, each in the same multiple.
+pub(super) fn octant_slots(centres: &[DVec3], middle: DVec3) -> [usize; 8] {
+    debug_assert!(centres.len() <= 8, "{} children", centres.len());
+    let mut wishes = [(f64::NEG_INFINITY, usize::MAX, usize::MAX); 64];
+    for (child, &centre) in centres.iter().enumerate() {
+        let v = centre - middle;
+        for slot in 0..8 {
             let sign = |bit: usize| if slot & bit != 0 { 1.0 } else { -1.0 };
-            let v = centre - middle;
-            wishes.push((sign(4) * v.x + sign(2) * v.y + sign(1) * v.z, part, slot));
+            wishes[child * 8 + slot] = (sign(4) * v.x + sign(2) * v.y + sign(1) * v.z, child, slot);
         }
     }
-    wishes.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut slots = vec![usize::MAX; parts.len()];
-    for (_, part, slot) in wishes {
-        if slots[part] == usize::MAX && !slots.contains(&slot) {
-            slots[part] = slot;
+    let wishes = &mut wishes[..centres.len() * 8];
+    wishes.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut slots = [usize::MAX; 8];
+    for &mut (_, child, slot) in wishes {
+        if slots[child] == usize::MAX && !slots.contains(&slot) {
+            slots[child] = slot;
         }
     }
     slots

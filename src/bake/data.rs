@@ -1,7 +1,10 @@
 //! The baked scene: flat arrays, ready to upload or to trace.
 
 use super::BakeError;
-use crate::layout::{Emitter, EnvironmentMap, Face, Instance, Light, Material, Node, SceneHeader, SceneView, Texture, Triangle, Vertex};
+use crate::layout::{
+    Emitter, EnvironmentMap, Face, Instance, Light, Material, Node, SceneHeader, SceneView, Texture, Triangle, Vertex,
+};
+use serde::{Deserialize, Serialize};
 
 /// One array of the data heap, as it is uploaded.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +44,27 @@ pub struct SceneData {
     pub stack_depth: u32,
     /// Dropped primitives and the like; printed once.
     pub warnings: Vec<String>,
+    /// What baking took.
+    pub times: BakeTimes,
+}
+
+/// Seconds by stage of baking. Meshes are baked side by side: their stages add up the seconds of all threads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BakeTimes {
+    /// Materials, lights, textures, tables.
+    pub materials_s: f64,
+    /// Faces, vertices and boxes of the meshes.
+    pub geometry_s: f64,
+    /// Binary hierarchies of the meshes.
+    pub binary_s: f64,
+    /// Their conversion to eight-wide ones.
+    pub wide_s: f64,
+    /// Instances, and the top level over them.
+    pub top_s: f64,
+    /// Nodes and triangles laid out as the traversal reads them.
+    pub pack_s: f64,
+    /// Everything, on the clock.
+    pub whole_s: f64,
 }
 
 impl SceneData {

@@ -7,10 +7,11 @@ use super::environment::{bake_environment, luminance};
 use super::{BakeError, SceneData};
 use crate::layout::{
     EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_ONE_SIDED, EMITTER_SPHERE, EMITTER_TEXTURED, EMITTER_TRIANGLE, Emitter,
-    INVALID, Instance, KIND_SPHERE, LIGHT_DIRECTIONAL, LIGHT_SPOT, Light, MATERIAL_EMIT_ONE_SIDED, MODEL_EMISSIVE,
-    Material, PARAMETER_COLOR, PARAMETER_EMISSION,
+    INVALID, Instance, KIND_SPHERE, LIGHT_DIRECTIONAL, LIGHT_SPOT, Light, MATERIAL_EMIT_ONE_SIDED, MODEL_BLEND,
+    MODEL_EMISSIVE, Material, PARAMETER_COLOR, PARAMETER_EMISSION,
 };
 use crate::scene::{Background, Scene};
+use crate::shading::material::{emission_material, own_weight};
 use glam::{DMat3, DVec3, Vec3, Vec4};
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -119,17 +120,13 @@ fn distribute(mut all: Collection, data: &mut SceneData) {
     data.emitters = all.emitters;
 }
 
-/// What a material sends out, without its textures.
+/// What a material sends out, without its textures, as far as it covers. A blend shows its leaves; what they emit is found
+/// by chance only.
 fn emission(material: &Material) -> Vec3 {
-    material.emission + if material.model == MODEL_EMISSIVE { material.color } else { Vec3::ZERO }
+    if material.model == MODEL_BLEND { Vec3::ZERO } else { emission_material(material) * own_weight(material) }
 }
 
-fn collect_instance(
-    data: &SceneData,
-    index: usize,
-    primitives: &dyn Fn(usize) -> Vec<u32>,
-    all: &mut Collection,
-) {
+fn collect_instance(data: &SceneData, index: usize, primitives: &dyn Fn(usize) -> Vec<u32>, all: &mut Collection) {
     let instance = &data.instances[index];
     let first = all.emitters.len();
     let glows = |id: u32| luminance(emission(&data.materials[id as usize]).as_dvec3()) > 0.0;
@@ -138,10 +135,12 @@ fn collect_instance(
         sided | if textured { EMITTER_TEXTURED } else { 0 }
     };
     let textured = |material: &Material| {
-        let first = material.first_texture as usize;
-        let records = &data.textures[first..first + material.texture_count as usize];
-        let shown = material.model == MODEL_EMISSIVE;
-        records.iter().any(|t| t.parameter == PARAMETER_EMISSION || (shown && t.parameter == PARAMETER_COLOR))
+        let (first, count) = (material.first_texture as usize, material.texture_count as usize);
+        data.textures[first..first + count].iter().any(|texture| match texture.parameter {
+            PARAMETER_EMISSION => true,
+            PARAMETER_COLOR => material.model == MODEL_EMISSIVE,
+            _ => false,
+        })
     };
     let mut power = 0.0;
     let sides = |material: &Material| if (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0 { 1.0 } else { 2.0 };

@@ -36,8 +36,8 @@ pub fn bake_environment(environment: &Environment, texture: &Texture) -> Option<
     let share = |row: usize, column: usize| {
         let right = (column + 1) % width;
         let (upper, lower) = (row * width, (row + 1) * width);
-        let mean =
-            0.25 * (density[upper + column] + density[upper + right] + density[lower + column] + density[lower + right]);
+        let mean = 0.25
+            * (density[upper + column] + density[upper + right] + density[lower + column] + density[lower + right]);
         let cell_height = if row == 0 || row == height { 0.5 } else { 1.0 };
         mean * cell_height / (width * height) as f64
     };

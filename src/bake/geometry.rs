@@ -4,6 +4,7 @@ use super::bvh::{Bounds, MESH_LEAF, Tree};
 use crate::layout::{Face, Triangle, Vertex};
 use crate::scene::{MaterialId, Mesh};
 use glam::{DVec3, Vec3};
+use std::time::Instant;
 
 /// Coordinates below this (2^-60 of the mesh's size) become 0, as the ray's do (`trace::ray`): no difference between the
 /// two then has so few bits that the survival of subnormals could matter.
@@ -25,6 +26,8 @@ pub struct BakedMesh {
     /// `trace` works far from overflow and underflow at any scale. Instances multiply it back, exactly.
     pub unit: f64,
     pub warning: Option<String>,
+    /// Seconds that all but the hierarchy took.
+    pub geometry_s: f64,
 }
 
 impl BakedMesh {
@@ -43,6 +46,7 @@ fn unit_of(largest: f32) -> f64 {
 /// Bakes one mesh. `default_material`: of faces that name none. Triangles with corners that are not numbers or without
 /// area are dropped and counted in `warning`.
 pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId) -> BakedMesh {
+    let start = Instant::now();
     let finite = |corners: &[u32; 3]| corners.iter().all(|&i| mesh.positions[i as usize].is_finite());
     let used = mesh.triangles.iter().filter(|corners| finite(corners)).flatten();
     let largest = used.fold(0.0f32, |largest, &i| largest.max(mesh.positions[i as usize].abs().max_element()));
@@ -74,6 +78,7 @@ pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId) -> BakedMesh {
             mesh.name
         ));
     }
+    baked.geometry_s = start.elapsed().as_secs_f64();
     if !kept.is_empty() {
         baked.bounds = Some(baked.boxes.iter().fold(Bounds::EMPTY, |b, &c| b.union(c)));
         baked.tree = Tree::build(&baked.boxes, MESH_LEAF);

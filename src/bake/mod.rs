@@ -13,13 +13,15 @@ pub mod filter;
 mod geometry;
 mod instance;
 mod light;
+mod measured;
 mod mip;
 mod model;
 mod scene;
 pub mod srgb;
 mod texture;
+mod wide;
 
-pub use data::{HeapPiece, SceneData};
+pub use data::{BakeTimes, HeapPiece, SceneData};
 pub use scene::bake;
 
 /// Why a scene cannot be baked: exit code 65.
@@ -39,15 +41,17 @@ pub enum BakeError {
     /// The loop over a material's textures has a bound.
     #[error("material \"{name}\" has {count} textures; 16 are possible")]
     Textures { name: String, count: usize },
-    /// A model whose shading has not landed yet.
-    #[error("material \"{name}\": its model cannot be drawn yet")]
-    Unfinished { name: String },
     /// More than a random number can tell apart.
     #[error("{count} triangles and lights glow; at most {most} are possible under direct and path")]
     Emitters { count: usize, most: usize },
     /// A blend of blends of blends.
     #[error("material \"{name}\" blends more than 8 materials, or itself")]
     Blend { name: String },
+    /// Flat or Gouraud shading of what has no triangles.
+    #[error(
+        "object \"{name}\" is an analytic sphere: it has no triangles to shade flat or by Gouraud's method; a sphere of a TOML scene gets them from \"segments\""
+    )]
+    Faceted { name: String },
     /// The eye is its own target, or the like.
     #[error("the camera {0}")]
     Camera(&'static str),

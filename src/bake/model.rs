@@ -2,9 +2,10 @@
 
 use super::BakeError;
 use super::albedo::{conductor_table, constant_table, diffuse_reflectance, kelemen_table, plastic_table};
+use super::measured::measured_table;
 use crate::layout::*;
 use crate::scene::{
-    self, Distribution, Fresnel, Lobe, Masking, Model, Transparency, WardNormalisation,
+    self, Distribution, Fresnel, Lobe, Masking, Model, Principled, Table, Transparency, WardNormalisation,
 };
 use glam::Vec3;
 
@@ -15,9 +16,11 @@ const BLEND_LEAVES: usize = MAX_LEAVES as usize;
 /// Blends within blends, at most.
 const BLEND_DEPTH: usize = 8;
 
-/// One material; its table is appended to `tables`. `traced`: for path tracing, which wants reciprocal models. A blend's materials are found by `bake_blends` later.
+/// One material; its table is appended to `tables`. A blend's materials are found by `bake_blends` later.
+/// `traced`: for path tracing, which wants reciprocal models.
 pub fn bake_material(
     material: &scene::Material,
+    measured: &[Table],
     traced: bool,
     tables: &mut Vec<f32>,
 ) -> Result<Material, BakeError> {
@@ -39,7 +42,7 @@ pub fn bake_material(
     if !material.emission_two_sided {
         baked.flags |= MATERIAL_EMIT_ONE_SIDED;
     }
-    bake_model(material, traced, &mut baked, tables)?;
+    bake_model(material, measured, traced, &mut baked, tables)?;
     match material.transparency {
         None if matches!(material.model, Model::Null) => baked.k_t = 1.0,
         // What does not cover lets everything through (`path` draws it at random, the others as a branch).
@@ -56,6 +59,7 @@ pub fn bake_material(
 
 fn bake_model(
     material: &scene::Material,
+    measured: &[Table],
     traced: bool,
     baked: &mut Material,
     tables: &mut Vec<f32>,
@@ -151,8 +155,10 @@ fn bake_model(
             baked.flags |= if *nonlinear { MATERIAL_NONLINEAR } else { 0 };
             plastic_table(baked, tables);
         }
-        Model::Principled(_) | Model::Measured { .. } => {
-            return Err(BakeError::Unfinished { name: material.name.clone() });
+        Model::Principled(principled) => bake_principled(principled, baked, tables),
+        Model::Measured { table } => {
+            baked.model = MODEL_MEASURED;
+            measured_table(&measured[table.0 as usize], baked, tables);
         }
         Model::Null => {
             baked.model = MODEL_NULL;
@@ -219,6 +225,28 @@ fn bake_fresnel(fresnel: Fresnel, baked: &mut Material) {
     }
 }
 
+/// Roughness, metallic and index are in the record, where textures reach them; the rest in the table.
+fn bake_principled(principled: &Principled, baked: &mut Material, tables: &mut Vec<f32>) {
+    let p = principled;
+    baked.model = MODEL_PRINCIPLED;
+    (baked.m0, baked.extra) = (p.roughness, p.metallic);
+    baked.eta = Vec3::splat(p.eta.max(1.0 + ETA_LEAST));
+    baked.flags |= if p.anisotropic == 0.0 { 0 } else { MATERIAL_ANISOTROPIC };
+    baked.flags |= if p.spec_trans == 0.0 { 0 } else { MATERIAL_TRANSMISSIVE };
+    baked.table = tables.len() as u32;
+    // The order of `shading/principled`.
+    tables.extend([
+        p.anisotropic,
+        p.spec_trans,
+        p.spec_tint,
+        p.sheen,
+        p.sheen_tint,
+        p.flatness,
+        p.clearcoat,
+        p.clearcoat_gloss,
+    ]);
+}
+
 /// Puts copies of each blend's two materials one after the other at the end of `baked`, where the blend's `table` says.
 pub fn bake_blends(materials: &[scene::Material], baked: &mut Vec<Material>) -> Result<(), BakeError> {
     for (index, material) in materials.iter().enumerate() {
@@ -268,4 +296,3 @@ pub fn casts_shadow(material: &scene::Material, traced: bool) -> bool {
     };
     material.casts_shadow.unwrap_or(traced || !pane)
 }
-

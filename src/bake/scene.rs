@@ -11,18 +11,24 @@ use super::srgb::srgb_table;
 use super::texture::{bake_textures, bind_textures};
 use super::{BakeError, SceneData};
 use crate::layout::{
-    Camera, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH,
-    KIND_SPHERE, SAMPLER_INDEPENDENT, SAMPLER_SOBOL, SAMPLER_STRATIFIED, STACK_SIZE, SceneHeader,
+    Camera, INSTANCE_FLAT, INSTANCE_GOURAUD, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH,
+    INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH, KIND_SPHERE, SAMPLER_INDEPENDENT, SAMPLER_SOBOL,
+    SAMPLER_STRATIFIED, STACK_SIZE, SceneHeader,
 };
-use crate::scene::{self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene};
+use crate::scene::{
+    self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene, Shading,
+};
+use crate::shading::material::emission_material;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use std::time::Instant;
 
 /// k of the film's fixed point (DESIGN, strict rule 8): 2^-22 of a film unit is the smallest step.
 const FILM_BITS: i32 = 22;
 
 /// Bakes a scene whose indices are valid (`scene::load` guarantees it).
 pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
+    let start = Instant::now();
     let mut data = SceneData::default();
     data.header = header(scene)?;
     bake_tables(&scene.film.filter, &mut data);
@@ -30,15 +36,25 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     check_count("words of texels", data.texels.len())?;
     let default_material = bake_materials(scene, &mut data)?;
     data.lights = scene.lights.iter().map(bake_light).collect();
+    data.times.materials_s = start.elapsed().as_secs_f64();
     let meshes = bake_meshes(scene, default_material);
+    for mesh in meshes.iter().flatten() {
+        data.times.geometry_s += mesh.geometry_s;
+        data.times.binary_s += mesh.tree.seconds[0];
+        data.times.wide_s += mesh.tree.seconds[1];
+    }
+    let placing = Instant::now();
     let mut parts = place_objects(scene, &meshes, default_material, &mut data)?;
     parts.meshes = meshes;
     bake_light_sources(scene, &parts, &mut data)?;
+    data.times.top_s = placing.elapsed().as_secs_f64();
     build_hierarchy(parts, &mut data)?;
     data.header.instance_count = data.instances.len() as u32;
     data.header.light_count = data.lights.len() as u32;
     data.header.material_count = data.materials.len() as u32;
     data.place_heap()?;
+    data.warnings.extend(unused_shading(scene));
+    data.times.whole_s = start.elapsed().as_secs_f64();
     Ok(data)
 }
 
@@ -55,7 +71,7 @@ fn traced(scene: &Scene) -> bool {
 /// Bakes all materials, and one more where an object or face names none. Returns the id of that one.
 fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, BakeError> {
     for material in &scene.materials {
-        let mut baked = bake_material(material, traced(scene), &mut data.tables)?;
+        let mut baked = bake_material(material, &scene.tables, traced(scene), &mut data.tables)?;
         bind_textures(material, &mut baked, data)?;
         data.materials.push(baked);
     }
@@ -65,7 +81,7 @@ fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, Bak
     };
     let default = MaterialId(scene.materials.len() as u32);
     if scene.objects.iter().any(nameless) {
-        data.materials.push(bake_material(&Material::grey("default"), traced(scene), &mut data.tables)?);
+        data.materials.push(bake_material(&Material::grey("default"), &[], traced(scene), &mut data.tables)?);
     }
     bake_blends(&scene.materials, &mut data.materials)?;
     check_count("table entries", data.tables.len())?;
@@ -91,10 +107,13 @@ fn bake_light_sources(scene: &Scene, parts: &Parts, data: &mut SceneData) -> Res
     if scene.ambient != Vec3::ZERO {
         data.warnings.push("ambient light has no effect under path and direct: light comes from what glows".to_owned());
     }
+    let shines = |material: &crate::layout::Material| emission_material(material) != Vec3::ZERO;
+    data.header.glows = u32::from(scene.background.shines() || data.materials.iter().any(shines));
     let world = parts.shown.iter().fold(Bounds::EMPTY, |all, &(_, own)| all.union(own));
     let primitives = |instance: usize| {
         let mesh = parts.shown[instance].0.and_then(|id| parts.meshes[id].as_ref());
-        let mut primitives: Vec<u32> = mesh.map_or(Vec::new(), |mesh| mesh.triangles.iter().map(|t| t.primitive).collect());
+        let mut primitives: Vec<u32> =
+            mesh.map_or(Vec::new(), |mesh| mesh.triangles.iter().map(|t| t.primitive).collect());
         primitives.sort_unstable();
         primitives
     };
@@ -172,13 +191,37 @@ fn place_objects(
                 (None, None) => default_material.0,
             },
             flags: (if shadowed { 0 } else { INSTANCE_NO_SHADOW })
-                | (if placement.mirrored { INSTANCE_MIRRORED } else { 0 }),
+                | (if placement.mirrored { INSTANCE_MIRRORED } else { 0 })
+                | instance_shading(scene, object)?,
             object: index as u32,
             ..Instance::default()
         });
     }
     check_count("instances", data.instances.len())?;
     Ok(parts)
+}
+
+/// Says so where a shading is asked for that the integrator does not honour.
+fn unused_shading(scene: &Scene) -> Option<String> {
+    let asked = |object: &Object| object.shading.unwrap_or(scene.settings.shading) != Shading::Phong;
+    let unused = scene.settings.integrator != Integrator::Local && scene.objects.iter().any(asked);
+    unused.then(|| "\"shading\" has an effect with integrator \"local\" only: all is shaded as \"phong\"".into())
+}
+
+/// The flag of an object's shading, which only `local` honours.
+fn instance_shading(scene: &Scene, object: &Object) -> Result<u32, BakeError> {
+    if scene.settings.integrator != Integrator::Local {
+        return Ok(0);
+    }
+    let flag = match object.shading.unwrap_or(scene.settings.shading) {
+        Shading::Flat => INSTANCE_FLAT,
+        Shading::Gouraud => INSTANCE_GOURAUD,
+        Shading::Phong => return Ok(0),
+    };
+    match object.geometry {
+        Geometry::Sphere => Err(BakeError::Faceted { name: object.name.clone() }),
+        Geometry::Mesh(_) => Ok(flag),
+    }
 }
 
 /// Whether an object casts shadows: what it says, else what its material says. Shadow rays know instances, not
@@ -214,13 +257,16 @@ fn build_hierarchy(parts: Parts, data: &mut SceneData) -> Result<(), BakeError> 
         return Ok(());
     }
     let boxes: Vec<Bounds> = parts.shown.iter().map(|&(_, world)| world).collect();
+    let start = Instant::now();
     let top = Tree::build(&boxes, TOP_LEAF);
     let meshes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.stack_depth());
     data.stack_depth = meshes.fold(top.stack_depth(), u32::max);
     if data.stack_depth > STACK_SIZE {
         return Err(BakeError::Deep(data.stack_depth));
     }
+    data.times.top_s += start.elapsed().as_secs_f64();
 
+    let start = Instant::now();
     let triangles = parts.meshes.iter().flatten().map(|mesh| mesh.triangles.len()).sum();
     check_count("triangles", triangles)?;
     let nodes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.node_count()).sum::<usize>() + top.node_count();
@@ -243,6 +289,7 @@ fn build_hierarchy(parts: Parts, data: &mut SceneData) -> Result<(), BakeError> 
     for (instance, (mesh, _)) in data.instances.iter_mut().zip(&parts.shown) {
         instance.root = mesh.map_or(INVALID, |id| roots[id]);
     }
+    data.times.pack_s = start.elapsed().as_secs_f64();
     Ok(())
 }
 

@@ -1,5 +1,6 @@
 //! The command line: one file per subcommand. The only folder that prints.
 
+pub mod bench;
 pub mod compare;
 pub mod devices;
 mod exact;
@@ -7,6 +8,7 @@ mod interrupt;
 pub mod merge;
 mod output;
 pub mod parity;
+pub mod plot;
 mod progress;
 pub mod render;
 mod setup;
@@ -48,8 +50,12 @@ enum Command {
     Merge(merge::MergeArgs),
     /// Render the same samples on two backends and compare every bit.
     Parity(parity::ParityArgs),
+    /// Measure rays a second on the CPU and on Vulkan devices, with every hit verified.
+    Bench(bench::BenchArgs),
     /// Compare two pictures: ULP, MSE, FLIP.
     Compare(compare::CompareArgs),
+    /// Draw a model: lobes, distributions, Fresnel, albedo and others.
+    Plot(plot::PlotArgs),
     /// Prove that pictures are right: compare them with those of Mitsuba 3.
     Verify(verify::VerifyArgs),
     /// List what can be used, and why the rest cannot.
@@ -88,7 +94,9 @@ pub fn main() -> ExitCode {
         Command::Render(args) => render::run(args, cli.quiet),
         Command::Merge(args) => merge::run(args),
         Command::Parity(args) => parity::run(args, cli.quiet),
+        Command::Bench(args) => bench::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Plot(args) => plot::run(args),
         Command::Verify(args) => verify::run(args),
         Command::Devices(args) => devices::run(args),
         Command::Completions { shell } => {

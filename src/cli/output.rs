@@ -1,6 +1,6 @@
 //! Flags of every command that writes a picture of a film.
 
-use crate::film::display::tonemap_from_name;
+use crate::film::tone::tonemap_from_name;
 use crate::film::write::{Aov, Format, Picture};
 use crate::film::{Film, FilmError, OutputFile};
 use crate::scene::ToneMap;
@@ -21,9 +21,12 @@ pub struct OutputFlags {
     /// Exposure of a PNG in stops; the scene's if not given.
     #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = stops)]
     pub exposure: Option<f32>,
-    /// Tone curve of a PNG: clamp, normalise, reinhard; the scene's if not given.
+    /// Tone curve of a PNG: clamp, normalise, reinhard, aces, agx; the scene's if not given.
     #[arg(long, value_name = "NAME", value_parser = tonemap_from_name)]
     pub tonemap: Option<ToneMap>,
+    /// Encoding of a PNG: light to the power 1/N, or `srgb`; the scene's if not given.
+    #[arg(long, value_name = "N|srgb", allow_negative_numbers = true, value_parser = gamma)]
+    pub gamma: Option<Gamma>,
 }
 
 fn format_name(name: &str) -> Result<Format, String> {
@@ -37,6 +40,18 @@ fn stops(text: &str) -> Result<f32, String> {
     }
 }
 
+/// None is sRGB. A type of its own: a flag's `Option` says whether it was given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gamma(pub Option<f32>);
+
+fn gamma(text: &str) -> Result<Gamma, String> {
+    match text.parse::<f32>() {
+        Ok(value) if (0.1..=10.0).contains(&value) => Ok(Gamma(Some(value))),
+        _ if text == "srgb" => Ok(Gamma(None)),
+        _ => Err("expected srgb or a number from 0.1 to 10".into()),
+    }
+}
+
 impl OutputFlags {
     /// The format for `path`.
     pub fn format_of(&self, path: &Path) -> Result<Format, FilmError> {
@@ -46,7 +61,8 @@ impl OutputFlags {
     /// Writes the film and prints its hash and samples: on stdout, unless that carries the picture.
     pub fn write(&self, film: &mut Film, format: Format, aovs: &[Aov], mut output: OutputFile) -> Result<()> {
         let tonemap = self.tonemap.unwrap_or(film.spec().tonemap);
-        film.set_display(tonemap, self.exposure.unwrap_or(film.spec().exposure));
+        let gamma = self.gamma.map_or(film.spec().gamma, |Gamma(gamma)| gamma);
+        film.set_display(tonemap, self.exposure.unwrap_or(film.spec().exposure), gamma);
         let picture = Picture { format, sixteen_bit: self.bits == "16", aovs };
         picture.write(film, &mut output)?;
         let piped = output.is_stdout();

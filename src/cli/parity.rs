@@ -55,9 +55,9 @@ pub struct ParityArgs {
 
 /// One side of a comparison.
 #[derive(Clone, Debug)]
-struct Contender {
-    label: String,
-    flags: BackendFlags,
+pub(super) struct Contender {
+    pub label: String,
+    pub flags: BackendFlags,
 }
 
 impl FromStr for Contender {

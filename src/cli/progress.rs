@@ -1,7 +1,12 @@
 //! The progress bar: samples done, rate and remaining time, on stderr when it is a terminal.
 
+use crate::scene::Scene;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
+use std::time::Duration;
+
+/// Scenes with fewer triangles and objects are baked before anyone could read a word.
+const LONG_BAKE: usize = 500_000;
 
 /// A bar over `total` samples (pixels times samples a pixel); hidden unless `show` and stderr is a terminal.
 pub fn bar(total: u64, show: bool) -> ProgressBar {
@@ -13,5 +18,21 @@ pub fn bar(total: u64, show: bool) -> ProgressBar {
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {per_sec} samples  {eta} left") {
         bar.set_style(style);
     }
+    bar
+}
+
+/// The time a long bake has taken so far, for whoever watches; hidden with `--quiet` and where stderr is no terminal.
+pub fn baking(scene: &Scene) -> ProgressBar {
+    let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+    let size = triangles + scene.objects.len();
+    if size < LONG_BAKE || !log::log_enabled!(log::Level::Warn) || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}  {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.set_message(format!("building the hierarchy of {:.1} million triangles and objects", size as f64 * 1e-6));
+    bar.enable_steady_tick(Duration::from_millis(200));
     bar
 }

@@ -193,7 +193,10 @@ fn render_passes(
 /// Says what the user should know of the samples.
 fn report(film: &Film, counters: &Counters) {
     if counters.limited > 0 {
-        log::warn!("{} contributions were limited by \"clamp\": the picture is darker than the scene", counters.limited);
+        log::warn!(
+            "{} contributions were limited by \"clamp\": the picture is darker than the scene",
+            counters.limited
+        );
     }
     if film.nan_count() > 0 {
         log::warn!("{} contributions were not a number and count as 0", film.nan_count());

@@ -1,6 +1,6 @@
 //! What render, parity and others share: from flags to a baked scene and a renderer.
 
-use super::{Usage, exact};
+use super::{Usage, exact, progress};
 use crate::bake::{SceneData, bake};
 use crate::film::{Film, FilmSpec, Rect};
 use crate::render::cpu::CpuRenderer;
@@ -77,6 +77,17 @@ pub enum IntegratorName {
     Path,
 }
 
+impl From<IntegratorName> for Integrator {
+    fn from(name: IntegratorName) -> Self {
+        match name {
+            IntegratorName::Local => Self::Local,
+            IntegratorName::Whitted => Self::Whitted,
+            IntegratorName::Direct => Self::Direct,
+            IntegratorName::Path => Self::Path,
+        }
+    }
+}
+
 /// The scene and what of it the command line changes.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Scene")]
@@ -135,13 +146,7 @@ impl SceneFlags {
         settings.samples = self.spp.unwrap_or(settings.samples);
         settings.seed = self.seed.unwrap_or(settings.seed);
         settings.max_depth = self.max_depth.unwrap_or(settings.max_depth);
-        match self.integrator {
-            Some(IntegratorName::Local) => settings.integrator = Integrator::Local,
-            Some(IntegratorName::Whitted) => settings.integrator = Integrator::Whitted,
-            Some(IntegratorName::Direct) => settings.integrator = Integrator::Direct,
-            Some(IntegratorName::Path) => settings.integrator = Integrator::Path,
-            None => {}
-        }
+        settings.integrator = self.integrator.map_or(settings.integrator, Integrator::from);
         for warning in &scene.warnings {
             log::warn!("{warning}");
         }
@@ -151,7 +156,9 @@ impl SceneFlags {
 
 /// Bakes a scene and prints what baking dropped.
 pub fn bake_scene(scene: &Scene) -> anyhow::Result<SceneData> {
+    let bar = progress::baking(scene);
     let data = bake(scene).with_context(|| scene.name.clone())?;
+    bar.finish_and_clear();
     for warning in &data.warnings {
         log::warn!("{warning}");
     }
@@ -240,7 +247,8 @@ impl BackendFlags {
         Ok(Box::new(renderer))
     }
 
-    fn vulkan_options(&self) -> VulkanOptions {
+    /// What the flags say of a Vulkan device.
+    pub fn vulkan_options(&self) -> VulkanOptions {
         VulkanOptions { device: self.device.clone(), fetch: self.fetch.into(), ..VulkanOptions::default() }
     }
 }
@@ -279,5 +287,6 @@ pub fn film_of(scene: &Scene, data: &SceneData, crop: Rect) -> Film {
         aovs: data.header.aovs != 0,
         tonemap: scene.film.tonemap,
         exposure: scene.film.exposure,
+        gamma: scene.film.gamma,
     })
 }

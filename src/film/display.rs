@@ -1,7 +1,8 @@
-//! From linear light to a display: exposure, tone curve, sRGB, integers. Apart from the film: a film can be shown in
+//! From linear light to a display: exposure, tone curve, sRGB or gamma, integers. Apart from the film: a film can be shown in
 //! many ways. Only the `libm` crate's transcendental functions, so that the file is the same bytes on every machine.
 
 use super::Image;
+use super::tone::tone_curve;
 use crate::scene::ToneMap;
 use rayon::prelude::*;
 
@@ -11,27 +12,10 @@ pub struct Display {
     pub tonemap: ToneMap,
     /// In stops: light is multiplied by 2^exposure.
     pub exposure: f32,
+    /// Integers hold light to the power 1/gamma; none: sRGB.
+    pub gamma: Option<f32>,
     /// Keep alpha (unpremultiplied); otherwise the picture is opaque and alpha is dropped.
     pub transparent: bool,
-}
-
-/// Names of the tone curves, as scene files and flags write them.
-pub const TONEMAP_NAMES: [(&str, ToneMap); 3] =
-    [("clamp", ToneMap::Clamp), ("normalise", ToneMap::Normalise), ("reinhard", ToneMap::Reinhard)];
-
-/// The curve of that name; an error names what is allowed.
-pub fn tonemap_from_name(name: &str) -> Result<ToneMap, String> {
-    let named = TONEMAP_NAMES.iter().find(|(n, _)| *n == name);
-    named.map(|(_, curve)| *curve).ok_or_else(|| "allowed: clamp, normalise, reinhard".into())
-}
-
-/// The name of a curve.
-pub fn tonemap_name(tonemap: ToneMap) -> &'static str {
-    match tonemap {
-        ToneMap::Clamp => "clamp",
-        ToneMap::Normalise => "normalise",
-        ToneMap::Reinhard => "reinhard",
-    }
 }
 
 /// Linear light, 0 to 1, as sRGB, 0 to 1.
@@ -46,15 +30,15 @@ pub fn srgb_decode(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
+/// Linear light, 0 to 1, as integers store it, 0 to 1: to the power 1/gamma, sRGB without.
+pub fn display_encode(linear: f64, gamma: Option<f32>) -> f64 {
+    gamma.map_or_else(|| srgb_encode(linear), |gamma| libm::pow(linear, 1.0 / f64::from(gamma)))
+}
+
 /// Nearest integer of 0..=`max` to a value of 0 to 1 times `max`, halves up. Below 0 and NaN give 0, above 1 `max`.
 pub fn quantise(value: f64, max: u16) -> u16 {
     // `as` turns NaN into 0.
     (value * f64::from(max) + 0.5).clamp(0.0, f64::from(max)) as u16
-}
-
-/// Rec. 709 luminance.
-fn luminance(rgb: [f64; 3]) -> f64 {
-    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
 }
 
 /// Colour and alpha as they are shown, before the curve: divided by alpha where the picture is transparent; not a
@@ -83,30 +67,25 @@ fn gain(image: &Image, display: &Display) -> f64 {
 /// One pixel after exposure and curve: linear light of the display and alpha, each 0 to 1.
 fn tone_map_pixel(pixel: [f32; 4], gain: f64, display: &Display) -> [f64; 4] {
     let (rgb, alpha) = visible(pixel, display.transparent);
-    let light = rgb.map(|v| v * gain);
-    let curve = match display.tonemap {
-        ToneMap::Clamp | ToneMap::Normalise => 1.0,
-        // equation 3: L_d = L / (1 + L), with hue and saturation kept (Reinhard et al. 2002)
-        ToneMap::Reinhard => 1.0 / (1.0 + luminance(light)),
-    };
-    let [r, g, b] = light.map(|v| (v * curve).min(1.0));
+    // Only a finite light has a place on a curve.
+    let [r, g, b] = tone_curve(display.tonemap, rgb.map(|v| (v * gain).min(f64::from(f32::MAX))));
     [r, g, b, alpha]
 }
 
 /// Exposure and tone curve: linear light of the display and alpha, each 0 to 1. Colour is not premultiplied in the
 /// result. `Normalise` divides by the largest of r, g, b in the whole image.
-/// Source: Reinhard, Stark, Shirley, Ferwerda 2002, Photographic Tone Reproduction for Digital Images, equation 3.
 pub fn tone_map(image: &Image, display: &Display) -> Vec<[f64; 4]> {
     let gain = gain(image, display);
     image.pixels.par_iter().map(|&pixel| tone_map_pixel(pixel, gain, display)).collect()
 }
 
-/// The displayed picture in integers of 0..=`max` (255 or 65,535): sRGB, and linear alpha where transparent, else `max`.
+/// The displayed picture in integers of 0..=`max` (255 or 65,535): encoded light, and linear alpha where transparent, else
+/// `max`.
 pub fn encode(image: &Image, display: &Display, max: u16) -> Vec<[u16; 4]> {
     let gain = gain(image, display);
     let integers = |&pixel: &[f32; 4]| {
         let [r, g, b, alpha] = tone_map_pixel(pixel, gain, display);
-        let [r, g, b] = [r, g, b].map(|v| quantise(srgb_encode(v), max));
+        let [r, g, b] = [r, g, b].map(|v| quantise(display_encode(v, display.gamma), max));
         [r, g, b, quantise(alpha, max)]
     };
     image.pixels.par_iter().map(integers).collect()

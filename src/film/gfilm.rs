@@ -14,8 +14,8 @@
 //!
 //! Nothing follows. A reader of version 1 refuses any other.
 
-use super::display::{tonemap_from_name, tonemap_name};
 use super::sums::{AovSums, Film, FilmSpec, SUM_BITS};
+use super::tone::{tonemap_from_name, tonemap_name};
 use super::{FilmError, MAX_SAMPLES, Rect, SampleRanges};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
@@ -53,6 +53,9 @@ struct Header {
     aovs: bool,
     tonemap: String,
     exposure: f32,
+    /// sRGB where it is missing, as in films of version 0.1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    gamma: Option<f32>,
 }
 
 impl Header {
@@ -75,6 +78,7 @@ impl Header {
             aovs: spec.aovs,
             tonemap: tonemap_name(spec.tonemap).into(),
             exposure: spec.exposure,
+            gamma: spec.gamma,
         }
     }
 
@@ -92,6 +96,9 @@ impl Header {
         }
         if !self.exposure.is_finite() {
             return Err("exposure is not a finite number".into());
+        }
+        if let Some(gamma) = self.gamma.filter(|gamma| !(0.1..=10.0).contains(gamma)) {
+            return Err(format!("gamma is {gamma}; allowed is 0.1 to 10"));
         }
         if let Some([start, end]) = self.samples.iter().find(|[start, end]| start >= end || *end > MAX_SAMPLES) {
             return Err(format!("sample range {start}..{end} is not inside 0..{MAX_SAMPLES}"));
@@ -116,6 +123,7 @@ impl Header {
             aovs: self.aovs,
             tonemap,
             exposure: self.exposure,
+            gamma: self.gamma,
         };
         Ok((spec, ranges, [self.nan_count, self.clamped_count]))
     }

@@ -83,7 +83,7 @@ impl FlipMap {
 }
 
 /// Linear light as it is, clamped.
-const PLAIN: Display = Display { tonemap: ToneMap::Clamp, exposure: 0.0, transparent: false };
+const PLAIN: Display = Display { tonemap: ToneMap::Clamp, exposure: 0.0, gamma: None, transparent: false };
 
 /// Number of f32 numbers from `a` to `b`; 0 for equal ones, for +0 and -0, and for two NaNs; none if one is a NaN.
 pub fn ulp_distance(a: f32, b: f32) -> Option<u64> {

@@ -11,6 +11,7 @@ mod ranges;
 pub mod read;
 mod resolve;
 mod sums;
+pub mod tone;
 pub mod write;
 
 pub use error::{FilmError, MergeError};

@@ -41,12 +41,14 @@ pub struct FilmSpec {
     pub tonemap: ToneMap,
     /// In stops; not compared.
     pub exposure: f32,
+    /// Of the display; none: sRGB; not compared.
+    pub gamma: Option<f32>,
 }
 
 impl FilmSpec {
     /// How the picture is displayed.
     pub fn display(&self) -> Display {
-        Display { tonemap: self.tonemap, exposure: self.exposure, transparent: self.transparent }
+        Display { tonemap: self.tonemap, exposure: self.exposure, gamma: self.gamma, transparent: self.transparent }
     }
 }
 
@@ -112,10 +114,10 @@ impl Film {
         &self.spec
     }
 
-    /// How it is to be displayed from now on. `exposure` in stops, finite.
-    pub fn set_display(&mut self, tonemap: ToneMap, exposure: f32) {
-        debug_assert!(exposure.is_finite(), "{exposure}");
-        (self.spec.tonemap, self.spec.exposure) = (tonemap, exposure);
+    /// How it is to be displayed from now on. `exposure` in stops, finite; `gamma` above 0, sRGB without.
+    pub fn set_display(&mut self, tonemap: ToneMap, exposure: f32, gamma: Option<f32>) {
+        debug_assert!(exposure.is_finite() && gamma.is_none_or(|gamma| gamma > 0.0), "{exposure} {gamma:?}");
+        (self.spec.tonemap, self.spec.exposure, self.spec.gamma) = (tonemap, exposure, gamma);
     }
 
     /// The part of the frame it holds.

@@ -55,6 +55,10 @@ pub const KIND_SPHERE: u32 = 1;
 pub const INSTANCE_NO_SHADOW: u32 = 1;
 /// Instance flag: the transform mirrors (negative determinant), so winding is reversed in world space.
 pub const INSTANCE_MIRRORED: u32 = 2;
+/// Instance flag: its triangles are shaded at their centroid (row 8).
+pub const INSTANCE_FLAT: u32 = 4;
+/// Instance flag: its triangles are shaded at their corners (row 8).
+pub const INSTANCE_GOURAUD: u32 = 8;
 
 /// One placed object. 128 bytes. Matrices are three rows of four: `p' = (dot(row_i.xyz, p) + row_i.w)`.
 #[repr(C)]

@@ -86,8 +86,9 @@ pub struct SceneHeader {
     pub clamp: f32,
     /// Levels of pending rays: one per depth where rays branch, else one.
     pub level_count: u32,
+    /// 1 if a ray that has left a surface can meet light: something glows or surrounds the scene (path).
+    pub glows: u32,
     pub _pad0: u32,
-    pub _pad1: u32,
 }
 
 /// Intervals in the tabulated filter's inverse CDF.

@@ -22,7 +22,7 @@ pub use material::{
     Transparency, WardNormalisation,
 };
 pub use mesh::Mesh;
-pub use settings::{Background, Environment, Film, Filter, Integrator, RenderSettings, Sampler, ToneMap};
+pub use settings::{Background, Environment, Film, Filter, Integrator, RenderSettings, Sampler, Shading, ToneMap};
 pub use table::Table;
 pub use texture::{Pattern, PatternKind, Texture, TextureData, Wrap};
 pub use transform::Transform;
@@ -84,4 +84,6 @@ pub struct Object {
     pub material: Option<MaterialId>,
     /// Overrides the material's own answer.
     pub casts_shadow: Option<bool>,
+    /// Overrides the scene's.
+    pub shading: Option<Shading>,
 }

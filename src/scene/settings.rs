@@ -28,10 +28,41 @@ pub enum Sampler {
 /// Reconstruction filter; radii in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filter {
-    Box { radius: f32 },
-    Tent { radius: f32 },
-    Gaussian { radius: f32, sigma: f32 },
-    Mitchell { radius: f32, b: f32, c: f32 },
+    Box {
+        radius: f32,
+    },
+    Tent {
+        radius: f32,
+    },
+    Gaussian {
+        radius: f32,
+        sigma: f32,
+    },
+    Mitchell {
+        radius: f32,
+        b: f32,
+        c: f32,
+    },
+    /// The four-term window (Harris 1978).
+    BlackmanHarris {
+        radius: f32,
+    },
+    /// sinc(x) sinc(x / radius), x in pixels.
+    Lanczos {
+        radius: f32,
+    },
+}
+
+/// How the triangles of a mesh are shaded under `local` (row 8).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shading {
+    /// One evaluation a triangle, at its centroid with its own normal.
+    Flat,
+    /// One evaluation a corner, with its normal; the radiance is interpolated (Gouraud 1971).
+    Gouraud,
+    /// One evaluation a sample, with the interpolated normal (Phong 1975).
+    #[default]
+    Phong,
 }
 
 /// The image plane.
@@ -47,6 +78,8 @@ pub struct Film {
     pub tonemap: ToneMap,
     /// In stops.
     pub exposure: f32,
+    /// Display encoding is light to the power 1/gamma; none: sRGB.
+    pub gamma: Option<f32>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,6 +90,10 @@ pub enum ToneMap {
     Normalise,
     /// L / (1 + L) on luminance (Reinhard et al. 2002, equation 3).
     Reinhard,
+    /// ACES 1.0 as fitted by Hill 2016.
+    Aces,
+    /// Sobotka 2022.
+    Agx,
 }
 
 /// What a ray that leaves the scene sees.
@@ -112,4 +149,6 @@ pub struct RenderSettings {
     /// Largest channel of what one contribution of scattered light may add to a pixel (path).
     pub clamp: Option<f32>,
     pub shadows: bool,
+    /// Of objects that do not say otherwise; `local` only.
+    pub shading: Shading,
 }

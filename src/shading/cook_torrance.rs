@@ -1,23 +1,93 @@
 //! Cook and Torrance's model (rows 14 to 18): f = k_d O_d / pi + k_s O_s D G F / (4 (N.L)(N.V)), k_d + k_s = 1.
 //!
-//! D is Beckmann's, normalised, one lobe or two; G the V-cavity's; F exact. The 1982 paper writes
-//! D G F / (pi (N.L)(N.V)) with D = e^-(tan a / m)^2 / (m^2 cos^4 a): with the normalised D that is
-//! D G F / ((N.L)(N.V)), four times the above; `MATERIAL_D_1982` draws it so.
-//! Source: Cook and Torrance 1982, "A Reflectance Model for Computer Graphics".
+//! D is normalised, of one lobe or two: Beckmann's unless the flags name another; G the V-cavity's, or with `MATERIAL_SMITH`
+//! Smith's of each lobe, correlated by height; F exact, or Schlick's. The 1982 paper writes D G F / (pi (N.L)(N.V)) with
+//! D = e^-(tan a / m)^2 / (m^2 cos^4 a): with the normalised D that is D G F / ((N.L)(N.V)), four times the above;
+//! `MATERIAL_D_1982` draws it so. Source: Cook and Torrance 1982, "A Reflectance Model for Computer Graphics".
 
-use crate::layout::{MATERIAL_D_1982, Material};
+use crate::layout::{
+    DISTRIBUTION_GAUSSIAN, DISTRIBUTION_SHIFT, MATERIAL_D_1982, MATERIAL_SMITH, Material, SceneView, load_table,
+};
+use crate::shading::distribution::{facet_d, pdf_facet, sample_facet, smith_g_correlated};
 use crate::shading::fresnel::fresnel_material;
-use crate::shading::lobe::{DirectionSample, no_direction, on_upper_side, reflect_about, specular_probability};
-use crate::shading::math::{INV_PI, div, dot3, min_, rsqrt};
+use crate::shading::lobe::{
+    DirectionSample, make_direction, no_direction, on_upper_side, reflect_about, specular_probability,
+};
+use crate::shading::math::{INV_PI, div, dot3, min_, normalize3, rsqrt};
 use crate::shading::microfacet::{beckmann_lobes_d_slope, sample_beckmann, tan2_theta, v_cavity_g};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_zero};
 use crate::shading::warp::square_to_cosine_hemisphere;
 use glam::{Vec2, Vec3};
 
+/// The bits of `MATERIAL_ANISOTROPIC` and of both lobes' distributions: none is set for isotropic Beckmann lobes.
+pub const GENERAL_LOBES: u32 = 0xf0040;
+
+/// `DISTRIBUTION_*` of a lobe, 0 or 1.
+#[inline]
+pub fn lobe_distribution(material: &Material, lobe: u32) -> u32 {
+    (material.flags >> (DISTRIBUTION_SHIFT + 2 * lobe)) & 3
+}
+
+/// D of a lobe for a unit facet normal, per steradian.
+#[inline]
+pub fn lobe_d(scene: &SceneView, material: &Material, lobe: u32, wm: Vec3) -> f32 {
+    let kind = lobe_distribution(material, lobe);
+    // Of the tables only the Gaussian's constant is asked for.
+    let mut scale: f32 = 1.0;
+    if kind == DISTRIBUTION_GAUSSIAN {
+        scale = load_table(scene, material.table + lobe);
+    }
+    if lobe == 0 {
+        return facet_d(kind, material.m0, material.m0_v, scale, wm);
+    }
+    facet_d(kind, material.m1, material.m1_v, scale, wm)
+}
+
+/// Smith's G of a lobe.
+#[inline]
+pub fn lobe_g(material: &Material, lobe: u32, wo: Vec3, wi: Vec3) -> f32 {
+    let kind = lobe_distribution(material, lobe);
+    if lobe == 0 {
+        return smith_g_correlated(kind, material.m0, material.m0_v, wo, wi);
+    }
+    smith_g_correlated(kind, material.m1, material.m1_v, wo, wi)
+}
+
+/// D of both lobes by their weights. `h`: any multiple of the facet normal.
+#[inline]
+pub fn both_lobes_d(scene: &SceneView, material: &Material, h: Vec3, w0: f32, w1: f32) -> f32 {
+    if (material.flags & GENERAL_LOBES) == 0 {
+        return beckmann_lobes_d_slope(tan2_theta(h), material.m0, material.m1, w0, w1);
+    }
+    let wm = normalize3(h);
+    let mut d: f32 = 0.0;
+    if w0 > 0.0 {
+        d += w0 * lobe_d(scene, material, 0, wm);
+    }
+    if w1 > 0.0 {
+        d += w1 * lobe_d(scene, material, 1, wm);
+    }
+    d
+}
+
+/// D G of both lobes by their weights. `h`: wo + wi; `n_h`, `v_h`: its cosines.
+#[inline]
+pub fn both_lobes(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3, h: Vec3, n_h: f32, v_h: f32) -> f32 {
+    if (material.flags & MATERIAL_SMITH) == 0 {
+        return both_lobes_d(scene, material, h, material.w0, material.w1) * v_cavity_g(n_h, wo.z, v_h, wi.z);
+    }
+    let wm = normalize3(h);
+    let first = material.w0 * (lobe_d(scene, material, 0, wm) * lobe_g(material, 0, wo, wi));
+    if material.w1 <= 0.0 {
+        return first;
+    }
+    first + material.w1 * (lobe_d(scene, material, 1, wm) * lobe_g(material, 1, wo, wi))
+}
+
 /// Diffuse and specular reflection times cosine, per steradian. Local frame; zero unless both are on the upper side.
 /// Finite everywhere; the V-cavity's G lets the grazing mirror direction grow as 1 / (N.V).
 #[inline]
-pub fn eval_cook_torrance(material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
+pub fn eval_cook_torrance(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
     if !on_upper_side(wo, wi) {
         return spectrum_zero();
     }
@@ -27,12 +97,11 @@ pub fn eval_cook_torrance(material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
     let n_h = min_(h.z * inv_h, 1.0);
     // V.H = L.H = |V + L| / 2
     let v_h = min_((0.5 * h2) * inv_h, 1.0);
-    let d = beckmann_lobes_d_slope(tan2_theta(h), material.m0, material.m1, material.w0, material.w1);
-    let g = v_cavity_g(n_h, wo.z, v_h, wi.z);
+    let dg = both_lobes(scene, material, wo, wi, h, n_h, v_h);
     let f = fresnel_material(material, v_h);
     // N.L of the cosine cancels the one below.
     let quarter = if (material.flags & MATERIAL_D_1982) != 0 { 1.0 } else { 0.25 };
-    let facets = (material.k_s * quarter) * div(d * g, wo.z);
+    let facets = (material.k_s * quarter) * div(dg, wo.z);
     let diffuse = material.color * ((material.k_d * INV_PI) * wi.z);
     let specular = (material.specular_color * f) * facets;
     spectrum_from_rgb(diffuse + specular)
@@ -40,43 +109,59 @@ pub fn eval_cook_torrance(material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
 
 /// Share of lobe 0 in w0 + w1; 1 if there is none.
 #[inline]
-fn first_lobe_share(material: &Material) -> f32 {
+pub fn first_lobe_share(material: &Material) -> f32 {
     let sum = material.w0 + material.w1;
     if sum > 1.0e-20 { div(material.w0, sum) } else { 1.0 }
 }
 
+/// Density of the facets that both lobes sample, per steradian of H. `h`: wo + wi; `inv_h`: one over its length.
+#[inline]
+pub fn pdf_lobes(scene: &SceneView, material: &Material, wo: Vec3, h: Vec3, inv_h: f32) -> f32 {
+    let share = first_lobe_share(material);
+    if (material.flags & GENERAL_LOBES) == 0 {
+        return both_lobes_d(scene, material, h, share, 1.0 - share) * (h.z * inv_h);
+    }
+    let wm = h * inv_h;
+    let first = pdf_facet(lobe_distribution(material, 0), material.m0, material.m0_v, wo, wm);
+    let second = pdf_facet(lobe_distribution(material, 1), material.m1, material.m1_v, wo, wm);
+    share * first + (1.0 - share) * second
+}
+
 /// Density of `sample_cook_torrance`; its integral over the upper side is below 1 by what falls under the horizon.
 #[inline]
-pub fn pdf_cook_torrance(material: &Material, wo: Vec3, wi: Vec3) -> f32 {
+pub fn pdf_cook_torrance(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> f32 {
     if !on_upper_side(wo, wi) {
         return 0.0;
     }
     let p = specular_probability(material);
-    let share = first_lobe_share(material);
     let h = wo + wi;
     let h2 = dot3(h, h);
     let inv_h = rsqrt(h2);
     let v_h = (0.5 * h2) * inv_h;
-    // Density of H is D (N.H); d omega_i = 4 (V.H) d omega_h.
-    let d = beckmann_lobes_d_slope(tan2_theta(h), material.m0, material.m1, share, 1.0 - share);
-    let specular = div(d * (h.z * inv_h), 4.0 * v_h);
+    // d omega_i = 4 (V.H) d omega_h
+    let facets = pdf_lobes(scene, material, wo, h, inv_h);
+    let specular = div(facets, 4.0 * v_h);
     (1.0 - p) * (wi.z * INV_PI) + p * specular
 }
 
-/// Cosine-weighted, or `wo` mirrored about a Beckmann facet of either lobe; what falls below the horizon is dropped.
+/// Cosine-weighted, or `wo` mirrored about a facet of either lobe; what falls below the horizon is dropped.
 /// `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, chooses diffuse, lobe 0 or lobe 1.
 #[inline]
-pub fn sample_cook_torrance(material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
+pub fn sample_cook_torrance(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
     let p = specular_probability(material);
-    let wi = if u_lobe < p * first_lobe_share(material) {
-        reflect_about(wo, sample_beckmann(u, material.m0))
-    } else if u_lobe < p {
-        reflect_about(wo, sample_beckmann(u, material.m1))
-    } else {
-        square_to_cosine_hemisphere(u)
-    };
+    let first = u_lobe < p * first_lobe_share(material);
+    let m = if first { material.m0 } else { material.m1 };
+    let mut wi = square_to_cosine_hemisphere(u);
+    if u_lobe < p {
+        let mut wm = sample_beckmann(u, m);
+        if (material.flags & GENERAL_LOBES) != 0 {
+            let kind = lobe_distribution(material, if first { 0 } else { 1 });
+            wm = sample_facet(kind, m, if first { material.m0_v } else { material.m1_v }, wo, u);
+        }
+        wi = reflect_about(wo, wm);
+    }
     if !on_upper_side(wo, wi) {
         return no_direction();
     }
-    DirectionSample { wi, pdf: pdf_cook_torrance(material, wo, wi) }
+    make_direction(wi, pdf_cook_torrance(scene, material, wo, wi))
 }

@@ -50,8 +50,5 @@ pub fn texture_uv(texture: &Texture, uv: Vec2) -> Vec2 {
 /// A difference of the surface's uvs as one of the texture's own coordinates.
 #[inline]
 pub fn texture_vector(texture: &Texture, uv: Vec2) -> Vec2 {
-    Vec2::new(
-        uv.x * texture.scale_u + uv.y * texture.shear_u,
-        uv.y * texture.scale_v + uv.x * texture.shear_v,
-    )
+    Vec2::new(uv.x * texture.scale_u + uv.y * texture.shear_u, uv.y * texture.scale_v + uv.x * texture.shear_v)
 }

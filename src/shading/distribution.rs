@@ -197,7 +197,7 @@ pub fn sample_visible(kind: u32, alpha_u: f32, alpha_v: f32, wo: Vec3, u: Vec2) 
         let radius = sqrt_(u.x);
         let t1 = radius * cos_turns(u.y);
         let mut t2 = radius * sin_turns(u.y);
-        let s = 0.5 * (1.0 + view.z);
+        let s = view.z * 0.5 + 0.5;
         t2 = (1.0 - s) * sqrt_(max_(1.0 - t1 * t1, 0.0)) + s * t2;
         let t3 = sqrt_(max_((1.0 - t1 * t1) - t2 * t2, 0.0));
         // section 4.3: back onto the hemisphere, T1 = (-sin, cos, 0), T2 = view x T1

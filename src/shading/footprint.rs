@@ -1,9 +1,9 @@
 //! How texture coordinates run over a surface, what a pixel's cone covers of them, and normals from textures (row 27).
 
 use crate::layout::Texture;
+use crate::shading::coordinate::finite_or_zero;
 use crate::shading::frame::{frame_from_tangent, to_world};
 use crate::shading::math::{HUGE, TINY, clamp_, cross3, div, dot3, max_, normalize3, rcp};
-use crate::shading::coordinate::finite_or_zero;
 use glam::{Vec2, Vec3};
 
 /// Smallest cosine between a cone and the surface it meets: the footprint is at most 1000 times as long as wide.
@@ -66,10 +66,7 @@ pub fn cone_footprint(gradients: UvGradients, normal: Vec3, direction: Vec3, wid
     let cosine = dot3(normal, direction);
     let frame = frame_from_tangent(normal, direction);
     let extent = div(width, max_(cosine.abs(), COS_CONE_LEAST));
-    Footprint {
-        along: covered(gradients, frame.tangent * extent),
-        across: covered(gradients, frame.bitangent * width),
-    }
+    Footprint { along: covered(gradients, frame.tangent * extent), across: covered(gradients, frame.bitangent * width) }
 }
 
 /// `mapped` (unit), or what is nearest to it at the least cosine from `normal`.

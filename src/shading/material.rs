@@ -6,10 +6,10 @@
 //! `sample_material` only: their eval and pdf are zero, and `local` and `whitted` draw them as branches.
 
 use crate::layout::{
-    MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC,
-    MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MIRROR, MODEL_NULL, MODEL_OREN_NAYAR, MODEL_PHONG,
-    MODEL_PLASTIC, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC, MODEL_ROUGH_PLASTIC, MODEL_THIN_DIELECTRIC,
-    MODEL_WARD, Material, SceneView,
+    MATERIAL_FILTERED, MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE,
+    MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR, MODEL_NULL,
+    MODEL_OREN_NAYAR, MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC,
+    MODEL_ROUGH_PLASTIC, MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneView,
 };
 use crate::shading::ashikhmin::{eval_ashikhmin, pdf_ashikhmin, sample_ashikhmin};
 use crate::shading::blinn_phong::{eval_blinn_phong, pdf_blinn_phong, sample_blinn_phong};
@@ -21,11 +21,13 @@ use crate::shading::kelemen::{eval_kelemen, pdf_kelemen, sample_kelemen};
 use crate::shading::lambert::{eval_lambert, pdf_lambert, sample_lambert};
 use crate::shading::lobe::{COS_MIN, DirectionSample, no_direction};
 use crate::shading::math::clamp_;
+use crate::shading::measured::{eval_measured, pdf_measured, sample_measured};
 use crate::shading::oren_nayar::{eval_oren_nayar, pdf_oren_nayar, sample_oren_nayar};
 use crate::shading::phong::{eval_phong, pdf_phong, sample_phong};
 use crate::shading::plastic::{
     eval_plastic, eval_rough_plastic, pdf_plastic, pdf_rough_plastic, sample_plastic, sample_rough_plastic,
 };
+use crate::shading::principled::{eval_principled, pdf_principled, sample_principled};
 use crate::shading::rough_conductor::{eval_rough_conductor, pdf_rough_conductor, sample_rough_conductor};
 use crate::shading::rough_dielectric::{eval_rough_dielectric, pdf_rough_dielectric, sample_rough_dielectric};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_zero};
@@ -40,7 +42,7 @@ pub fn eval_material(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3)
         MODEL_LAMBERT => eval_lambert(material, wo, wi),
         MODEL_PHONG => eval_phong(material, wo, wi),
         MODEL_BLINN_PHONG => eval_blinn_phong(material, wo, wi),
-        MODEL_COOK_TORRANCE => eval_cook_torrance(material, wo, wi),
+        MODEL_COOK_TORRANCE => eval_cook_torrance(scene, material, wo, wi),
         MODEL_OREN_NAYAR => eval_oren_nayar(material, wo, wi),
         MODEL_WARD => eval_ward(material, wo, wi),
         MODEL_ASHIKHMIN_SHIRLEY => eval_ashikhmin(material, wo, wi),
@@ -49,6 +51,8 @@ pub fn eval_material(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3)
         MODEL_ROUGH_DIELECTRIC => eval_rough_dielectric(material, wo, wi),
         MODEL_PLASTIC => eval_plastic(material, wo, wi),
         MODEL_ROUGH_PLASTIC => eval_rough_plastic(scene, material, wo, wi),
+        MODEL_PRINCIPLED => eval_principled(scene, material, wo, wi),
+        MODEL_MEASURED => eval_measured(scene, material, wo, wi),
         _ => spectrum_zero(),
     }
 }
@@ -60,7 +64,7 @@ pub fn pdf_material(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) 
         MODEL_LAMBERT => pdf_lambert(material, wo, wi),
         MODEL_PHONG => pdf_phong(material, wo, wi),
         MODEL_BLINN_PHONG => pdf_blinn_phong(material, wo, wi),
-        MODEL_COOK_TORRANCE => pdf_cook_torrance(material, wo, wi),
+        MODEL_COOK_TORRANCE => pdf_cook_torrance(scene, material, wo, wi),
         MODEL_OREN_NAYAR => pdf_oren_nayar(material, wo, wi),
         MODEL_WARD => pdf_ward(material, wo, wi),
         MODEL_ASHIKHMIN_SHIRLEY => pdf_ashikhmin(material, wo, wi),
@@ -69,24 +73,27 @@ pub fn pdf_material(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) 
         MODEL_ROUGH_DIELECTRIC => pdf_rough_dielectric(material, wo, wi),
         MODEL_PLASTIC => pdf_plastic(material, wo, wi),
         MODEL_ROUGH_PLASTIC => pdf_rough_plastic(scene, material, wo, wi),
+        MODEL_PRINCIPLED => pdf_principled(scene, material, wo, wi),
+        MODEL_MEASURED => pdf_measured(scene, material, wo, wi),
         _ => 0.0,
     }
 }
 
 /// The direction that models of one side choose, with density `pdf_material`; pdf 0 if it is to be dropped.
 #[inline]
-fn sample_direction(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
+pub fn sample_direction(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
     match material.model {
         MODEL_LAMBERT => sample_lambert(material, wo, u, u_lobe),
         MODEL_PHONG => sample_phong(material, wo, u, u_lobe),
         MODEL_BLINN_PHONG => sample_blinn_phong(material, wo, u, u_lobe),
-        MODEL_COOK_TORRANCE => sample_cook_torrance(material, wo, u, u_lobe),
+        MODEL_COOK_TORRANCE => sample_cook_torrance(scene, material, wo, u, u_lobe),
         MODEL_OREN_NAYAR => sample_oren_nayar(material, wo, u, u_lobe),
         MODEL_WARD => sample_ward(material, wo, u, u_lobe),
         MODEL_ASHIKHMIN_SHIRLEY => sample_ashikhmin(material, wo, u, u_lobe),
         MODEL_KELEMEN => sample_kelemen(scene, material, wo, u, u_lobe),
         MODEL_ROUGH_CONDUCTOR => sample_rough_conductor(scene, material, wo, u, u_lobe),
         MODEL_ROUGH_PLASTIC => sample_rough_plastic(scene, material, wo, u, u_lobe),
+        MODEL_MEASURED => sample_measured(scene, material, wo, u, u_lobe),
         _ => no_direction(),
     }
 }
@@ -102,6 +109,7 @@ pub fn sample_material(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2
         MODEL_ROUGH_DIELECTRIC => sample_rough_dielectric(material, wo, u, u_lobe),
         MODEL_THIN_DIELECTRIC => sample_thin_dielectric(material, wo, u_lobe),
         MODEL_PLASTIC => sample_plastic(material, wo, u, u_lobe),
+        MODEL_PRINCIPLED => sample_principled(scene, material, wo, u, u_lobe),
         MODEL_NULL => sample_null(wo),
         _ => {
             let direction = sample_direction(scene, material, wo, u, u_lobe);
@@ -157,6 +165,12 @@ pub fn mirror_weight(material: &Material, cos_o: f32) -> Spectrum {
 pub fn emission_material(material: &Material) -> Vec3 {
     let shown = if material.model == MODEL_EMISSIVE { material.color } else { Vec3::ZERO };
     material.emission + shown
+}
+
+/// How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
+#[inline]
+pub fn own_weight(material: &Material) -> f32 {
+    if (material.flags & MATERIAL_FILTERED) != 0 { 1.0 } else { 1.0 - material.k_t }
 }
 
 /// Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) where there is an interface.

@@ -30,6 +30,8 @@ pub fn channel_value(texel: Vec4, channel: u32) -> Vec3 {
 pub fn apply_parameter(material: Material, parameter: u32, texel: Vec3, scale: f32) -> Material {
     let mut result = material;
     let value = texel * scale;
+    // k_t is what is not covered.
+    let covered = 1.0 - material.k_t;
     match parameter {
         PARAMETER_COLOR => result.color *= value,
         PARAMETER_SPECULAR_COLOR => result.specular_color *= value,
@@ -45,9 +47,8 @@ pub fn apply_parameter(material: Material, parameter: u32, texel: Vec3, scale: f
             }
         }
         PARAMETER_METALLIC | PARAMETER_WEIGHT => result.extra = clamp_(material.extra * value.x, 0.0, 1.0),
-        // k_t is what is not covered.
-        PARAMETER_OPACITY => result.k_t = 1.0 - (1.0 - material.k_t) * clamp_(value.x, 0.0, 1.0),
-        PARAMETER_MASK => result.k_t = if (1.0 - material.k_t) * texel.x >= scale { 0.0 } else { 1.0 },
+        PARAMETER_OPACITY => result.k_t = 1.0 - covered * clamp_(value.x, 0.0, 1.0),
+        PARAMETER_MASK => result.k_t = if covered * texel.x >= scale { 0.0 } else { 1.0 },
         // Normal and bump maps.
         _ => {}
     }

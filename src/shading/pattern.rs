@@ -3,9 +3,9 @@
 use crate::layout::{
     PATTERN_CHECKER, PATTERN_GRADIENT, PATTERN_NOISE, SceneView, Texture, WRAP_MIRROR, WRAP_REPEAT, load_texel,
 };
-use crate::shading::math::{clamp_, cos_turns, div, dot2, mix3_, mix_, sin_turns};
-use crate::shading::sampling::{hash_combine, unit_float};
 use crate::shading::coordinate::wrap_coordinate;
+use crate::shading::math::{clamp_, cos_turns, div, dot2, mix_, mix3_, sin_turns};
+use crate::shading::sampling::{hash_combine, unit_float};
 use glam::{Vec2, Vec3, Vec4};
 
 /// Octaves of noise at most.

@@ -24,10 +24,7 @@ pub fn triangle_tangents(edge1: Vec3, edge2: Vec3, uv1: Vec2, uv2: Vec2) -> Tang
         return Tangents { dp_du: Vec3::ZERO, dp_dv: Vec3::ZERO };
     }
     let scale = rcp(area);
-    Tangents {
-        dp_du: (edge1 * uv2.y - edge2 * uv1.y) * scale,
-        dp_dv: (edge2 * uv1.x - edge1 * uv2.x) * scale,
-    }
+    Tangents { dp_du: (edge1 * uv2.y - edge2 * uv1.y) * scale, dp_dv: (edge2 * uv1.x - edge1 * uv2.x) * scale }
 }
 
 /// The tangents of the unit sphere at `p`, with longitude and latitude as coordinates (`sphere_uv`).

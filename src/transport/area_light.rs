@@ -3,9 +3,7 @@
 use crate::layout::{EMITTER_ONE_SIDED, Emitter, Instance};
 use crate::shading::frame::{frame_from_normal, to_world};
 use crate::shading::light::{LightSample, no_light};
-use crate::shading::math::{
-    INV_FOUR_PI, INV_TWO_PI, cos_turns, div, dot3, length3, max_, min_, rcp, sin_turns, sqrt_,
-};
+use crate::shading::math::{INV_FOUR_PI, INV_TWO_PI, cos_turns, div, dot3, length3, max_, min_, rcp, sin_turns, sqrt_};
 use crate::shading::spectrum::spectrum_from_rgb;
 use crate::shading::warp::{square_to_uniform_sphere, square_to_uniform_triangle};
 use crate::trace::ray::{transform_point, transform_vector};

@@ -5,14 +5,14 @@ use super::area_light::{
 };
 use super::textured::material_at;
 use crate::layout::{
-    EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_SPHERE, EMITTER_TEXTURED, Emitter, Hit, KIND_SPHERE,
-    Ray, SceneView, T_INFINITE, load_instance, load_light, load_material,
-    load_table,
+    EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_SPHERE, EMITTER_TEXTURED, Emitter, Hit, KIND_SPHERE, Ray, SceneView,
+    T_INFINITE, load_instance, load_light, load_material, load_table,
 };
 use crate::shading::environment::sample_environment;
 use crate::shading::light::{LightSample, no_light, sample_light};
-use crate::shading::material::emission_material;
+use crate::shading::material::{emission_material, own_weight};
 use crate::shading::math::{dot3, rcp};
+use crate::shading::sampling::SampleKey;
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_luminance};
 use crate::shading::warp::square_to_uniform_triangle;
 use crate::trace::ray::{transform_point, transform_vector};
@@ -31,7 +31,14 @@ pub fn choose_emitter(scene: &SceneView, u: Vec2) -> u32 {
 }
 
 /// Radiance of the point of a textured emitter that `lit` was drawn to from `position` with `u`.
-fn textured_radiance(scene: &SceneView, emitter: &Emitter, position: Vec3, u: Vec2, lit: &LightSample) -> Spectrum {
+fn textured_radiance(
+    scene: &SceneView,
+    emitter: &Emitter,
+    key: SampleKey,
+    position: Vec3,
+    u: Vec2,
+    lit: &LightSample,
+) -> Spectrum {
     let b = square_to_uniform_triangle(u);
     let ray = Ray { origin: position, direction: lit.wi, t_max: lit.distance, ..Ray::default() };
     let hit = Hit {
@@ -43,11 +50,13 @@ fn textured_radiance(scene: &SceneView, emitter: &Emitter, position: Vec3, u: Ve
         ..Hit::default()
     };
     let mut surface = surface_at(scene, &ray, &hit);
-    spectrum_from_rgb(emission_material(&material_at(scene, lit.wi, &hit, &mut surface)))
+    let material = material_at(scene, lit.wi, &hit, key, &mut surface);
+    spectrum_from_rgb(emission_material(&material) * own_weight(&material))
 }
 
-/// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1.
-pub fn sample_emitter(scene: &SceneView, emitter: &Emitter, surface: &Surface, u: Vec2) -> LightSample {
+/// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1. `key`: of the
+/// path.
+pub fn sample_emitter(scene: &SceneView, emitter: &Emitter, key: SampleKey, surface: &Surface, u: Vec2) -> LightSample {
     let position = surface.position;
     if emitter.kind == EMITTER_ENVIRONMENT {
         let seen = sample_environment(scene, u);
@@ -67,7 +76,7 @@ pub fn sample_emitter(scene: &SceneView, emitter: &Emitter, surface: &Surface, u
         lit = sample_triangle_light(emitter, position, u);
     }
     if (emitter.flags & EMITTER_TEXTURED) != 0 && lit.pdf_solid_angle > 0.0 {
-        lit.radiance = textured_radiance(scene, emitter, position, u, &lit) * rcp(lit.pdf_solid_angle);
+        lit.radiance = textured_radiance(scene, emitter, key, position, u, &lit) * rcp(lit.pdf_solid_angle);
     }
     lit
 }
@@ -82,8 +91,9 @@ pub fn casts_shadow(scene: &SceneView, emitter: &Emitter) -> bool {
 pub fn pdf_emitter(scene: &SceneView, origin: Vec3, direction: Vec3, t: f32, surface: &Surface) -> f32 {
     let instance = load_instance(scene, surface.instance);
     // Without textures: what bake made the choice by.
-    let luminance = spectrum_luminance(spectrum_from_rgb(emission_material(&load_material(scene, surface.material))));
-    let density = instance.light_density * luminance;
+    let material = load_material(scene, surface.material);
+    let shown = spectrum_from_rgb(emission_material(&material) * own_weight(&material));
+    let density = instance.light_density * spectrum_luminance(shown);
     if surface.kind == KIND_SPHERE {
         let along = transform_vector(instance.to_object, direction);
         let start = transform_point(instance.to_object, origin);

@@ -2,12 +2,12 @@
 
 use super::{DITHER_LIGHT, DITHER_SURFACE, LOBE_THROUGH, Queues, add_contribution, push_path, push_shadow};
 use crate::layout::{
-    Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_FILTERED, MATERIAL_ONE_SIDED, MATERIAL_TRANSMISSIVE,
-    Material, PathState, SceneView, ShadowRay, load_light,
+    Hit, Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_FILTERED, MATERIAL_ONE_SIDED,
+    MATERIAL_TRANSMISSIVE, Material, PathState, SceneView, ShadowRay, load_light,
 };
 use crate::shading::frame::{Frame, frame_from_normal, frame_from_tangent, to_local};
 use crate::shading::light::sample_light;
-use crate::shading::material::{ambient_material, emission_material, eval_material, is_delta};
+use crate::shading::material::{ambient_material, emission_material, eval_material, is_delta, own_weight};
 use crate::shading::math::{dot3, normalize3};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_max, spectrum_zero};
@@ -16,9 +16,25 @@ use crate::trace::surface::{Surface, surface_tangent};
 use glam::{Vec3, Vec4};
 
 /// Smallest cosine between shading normal and viewer; interpolated normals that face away are bent up to it.
-const COS_VIEW_MIN: f32 = 1.0e-3;
+pub const COS_VIEW_MIN: f32 = 1.0e-3;
 /// A shadow ray ends this fraction short of its light, so that a lamp's own glass does not hide it.
 pub const SHADOW_END: f32 = 0.9999;
+
+/// Where a hit is shaded: at itself, or where `faceted` puts it.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadingPoint {
+    pub surface: Surface,
+    /// Where on its triangle that is.
+    pub hit: Hit,
+    /// Where its shadow rays start.
+    pub shadow_from: Surface,
+    /// Unit, to the viewer.
+    pub wo: Vec3,
+    /// Part of the hit's radiance that it stands for, 0..1.
+    pub share: f32,
+    /// Keeps the dither of several points apart.
+    pub dither: u32,
+}
 
 /// The shading normal a viewer at `wo` sees: on the viewer's side of the surface (both sides are shaded alike), and
 /// bent towards the viewer where interpolation has turned it away.
@@ -57,11 +73,6 @@ pub fn emitted(surface: &Surface, material: &Material, wo: Vec3) -> Vec3 {
     emission_material(material)
 }
 
-/// How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
-pub fn own_weight(material: &Material) -> f32 {
-    if (material.flags & MATERIAL_FILTERED) != 0 { 1.0 } else { 1.0 - material.k_t }
-}
-
 /// What the surface adds for one light, before any shadow: throughput * eval * radiance.
 pub fn light_contribution(
     scene: &SceneView,
@@ -75,18 +86,19 @@ pub fn light_contribution(
     weight * eval_material(scene, material, to_local(frame, wo), to_local(frame, wi)) * radiance
 }
 
-/// Adds emission, ambient and every light's share of the surface, and lets the ray go on through a pane.
+/// Adds emission, ambient and every light's share of the surface, as seen from `point.wo`.
 /// `key`: of the path. Directions in world space. Radiance along the ray's way back.
 pub fn shade_local(
     scene: &SceneView,
     path: &PathState,
     key: SampleKey,
-    surface: &Surface,
+    point: &ShadingPoint,
     material: &Material,
     queues: &mut Queues,
 ) {
-    let wo = -path.ray.direction;
-    let weight = path.throughput * own_weight(material);
+    let surface = &point.surface;
+    let wo = point.wo;
+    let weight = path.throughput * (own_weight(material) * point.share);
     let hidden = is_hidden_back(surface, material, wo);
     let mut reflected = spectrum_from_rgb(scene.header.ambient) * ambient_material(material);
     if hidden {
@@ -94,8 +106,8 @@ pub fn shade_local(
     }
     let own = weight * (reflected + spectrum_from_rgb(emitted(surface, material, wo)));
     // A mirror or a glass covers the background like anything else.
-    let alpha = path.coverage * (1.0 - material.k_t);
-    let dither = dither_hash(key, DITHER_SURFACE);
+    let alpha = path.coverage * ((1.0 - material.k_t) * point.share);
+    let dither = dither_hash(key, DITHER_SURFACE + point.dither);
     add_contribution(queues, scene.header.film_scale, path.slot, Vec4::new(own.x, own.y, own.z, alpha), dither);
 
     if !is_delta(material) && !hidden {
@@ -106,9 +118,9 @@ pub fn shade_local(
             let seen = light_contribution(scene, weight, material, frame, wo, lit.wi, lit.radiance);
             if spectrum_max(seen) > 0.0 {
                 let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
-                let light_dither = dither_hash(key, DITHER_LIGHT + index);
+                let light_dither = dither_hash(key, (DITHER_LIGHT + point.dither) + index);
                 if scene.header.shadows != 0 && light.casts_shadow != 0 {
-                    let ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
+                    let ray = spawn_ray(&point.shadow_from, lit.wi, lit.distance * SHADOW_END);
                     push_shadow(
                         queues,
                         ShadowRay { ray, contribution, slot: path.slot, dither: light_dither, _pad0: 0, _pad1: 0 },
@@ -119,7 +131,10 @@ pub fn shade_local(
             }
         }
     }
+}
 
+/// Lets the ray go on through a pane.
+pub fn shade_through(scene: &SceneView, path: &PathState, surface: &Surface, material: &Material, queues: &mut Queues) {
     if material.k_t > 0.0 {
         let mut tint = Vec4::splat(material.k_t);
         if (material.flags & MATERIAL_FILTERED) != 0 {

@@ -7,6 +7,7 @@
 
 pub mod area_light;
 pub mod emitter;
+pub mod faceted;
 pub mod film;
 pub mod generate;
 pub mod local;
@@ -27,10 +28,13 @@ pub const DIMENSION_BSDF: u32 = 18;
 pub const DIMENSION_LOBE: u32 = 19;
 pub const DIMENSION_ROULETTE: u32 = 20;
 pub const DIMENSION_PANE: u32 = 21;
+pub const DIMENSION_LEAF: u32 = 32;
 /// Dither of contributions: emission and ambient, background, alpha; light i takes `DITHER_LIGHT + i`.
 pub const DITHER_SURFACE: u32 = 0x1000_0000;
 pub const DITHER_BACKGROUND: u32 = 0x1000_0001;
 pub const DITHER_LIGHT: u32 = 0x2000_0000;
+/// Added to both for each further point at which one hit is shaded.
+pub const DITHER_CORNER: u32 = 0x0400_0000;
 
 /// Branches of a path: hashed into the child's path id.
 pub const LOBE_THROUGH: u32 = 1;

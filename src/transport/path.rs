@@ -8,7 +8,7 @@
 //! Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit.
 
 use super::emitter::{casts_shadow, choose_emitter, pdf_emitter, sample_emitter};
-use super::local::{SHADOW_END, emitted, is_hidden_back, own_weight, shading_frame};
+use super::local::{SHADOW_END, emitted, is_hidden_back, shading_frame};
 use super::weight::{consistent, power_heuristic, survival};
 use super::{
     DIMENSION_BSDF, DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, DIMENSION_LOBE, DIMENSION_PANE, DIMENSION_ROULETTE,
@@ -16,12 +16,13 @@ use super::{
     count_limited, push_path, push_shadow,
 };
 use crate::layout::{
-    EMITTER_LIGHT, Hit, MATERIAL_FILTERED, Material, PathState, SceneView, ShadowRay, T_INFINITE, load_emitter,
+    EMITTER_LIGHT, Hit, MATERIAL_FILTERED, MODEL_THIN_DIELECTRIC, Material, PathState, SceneView, ShadowRay,
+    T_INFINITE, load_emitter,
 };
 use crate::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
 use crate::shading::environment::{background, pdf_environment};
 use crate::shading::frame::{Frame, to_local, to_world};
-use crate::shading::material::{eval_material, is_delta, pdf_material, sample_material};
+use crate::shading::material::{eval_material, is_delta, own_weight, pdf_material, sample_material};
 use crate::shading::math::{div, rcp};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, sample_1d, sample_2d};
 use crate::shading::spectrum::{Spectrum, spectrum_flush, spectrum_from_rgb, spectrum_max};
@@ -75,7 +76,7 @@ fn shade_emitter(
     if emitter.kind != EMITTER_LIGHT {
         u = sample_2d(key, DIMENSION_LIGHT);
     }
-    let lit = sample_emitter(scene, &emitter, surface, u);
+    let lit = sample_emitter(scene, &emitter, key, surface, u);
     let wo_local = to_local(frame, wo);
     let wi_local = to_local(frame, lit.wi);
     if spectrum_max(lit.radiance) <= 0.0 || !consistent(surface, wo, lit.wi, wo_local, wi_local) {
@@ -111,6 +112,10 @@ fn scatter(
     wo: Vec3,
     queues: &mut Queues,
 ) {
+    // The last ray can only meet what glows.
+    if scene.header.glows == 0 && path.depth + 1 >= scene.header.max_depth {
+        return;
+    }
     let wo_local = to_local(frame, wo);
     let u_lobe = sample_1d(key, DIMENSION_LOBE);
     let bsdf = sample_material(scene, material, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
@@ -124,7 +129,7 @@ fn scatter(
     next.path_id = hash_combine(path.path_id, LOBE_SCATTER);
     next.coverage = 0.0;
     next.pdf = if (bsdf.flags & SAMPLE_DELTA) != 0 { 0.0 } else { bsdf.pdf };
-    if (bsdf.flags & SAMPLE_TRANSMIT) != 0 {
+    if (bsdf.flags & SAMPLE_TRANSMIT) != 0 && material.model != MODEL_THIN_DIELECTRIC {
         next.eta = path.eta * bsdf.eta;
         next.absorption = if bsdf.wi.z < 0.0 { material.absorption } else { Vec3::ZERO };
     }

@@ -1,12 +1,15 @@
 //! What becomes of a ray once its hit is known.
 
+use super::faceted::{faceted, shading_point, shading_points};
 use super::generate::sample_key;
-use super::local::shade_local;
+use super::local::{shade_local, shade_through};
 use super::path::{shade_escape, shade_path};
 use super::textured::material_at;
 use super::whitted::shade_whitted;
 use super::{DITHER_BACKGROUND, Queues, add_aov, add_contribution};
-use crate::layout::{Hit, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, PathState, SceneView};
+use crate::layout::{
+    Hit, INTEGRATOR_LOCAL, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, PathState, SceneView, load_instance,
+};
 use crate::shading::dielectric::transmittance;
 use crate::shading::environment::background;
 use crate::shading::material::albedo_material;
@@ -47,17 +50,28 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
         return;
     }
     let mut surface = surface_at(scene, &path.ray, hit);
-    let material = material_at(scene, path.ray.direction, hit, &mut surface);
+    let named = surface.material;
+    let material = material_at(scene, path.ray.direction, hit, key, &mut surface);
     if scene.header.aovs != 0 && path.path_id == 0 {
         let albedo = albedo_material(&material);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
-        add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, surface.material);
+        add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
     if scene.header.integrator == INTEGRATOR_PATH {
         shade_path(scene, &path, key, hit, &surface, &material, queues);
         return;
     }
-    shade_local(scene, &path, key, &surface, &material, queues);
+    let local = scene.header.integrator == INTEGRATOR_LOCAL;
+    let flags = if local { load_instance(scene, hit.instance).flags } else { 0 };
+    for index in 0..shading_points(flags) {
+        let mut point = shading_point(scene, &path.ray, hit, &surface, flags, index);
+        let mut material_there = material;
+        if faceted(flags) {
+            material_there = material_at(scene, -point.wo, &point.hit, key, &mut point.surface);
+        }
+        shade_local(scene, &path, key, &point, &material_there, queues);
+    }
+    shade_through(scene, &path, &surface, &material, queues);
     if scene.header.integrator == INTEGRATOR_WHITTED && path.depth < scene.header.max_depth {
         shade_whitted(scene, &path, &surface, &material, queues);
     }

@@ -1,23 +1,23 @@
 //! The material of a point: its record with vertex colour and textures applied.
 
+use super::DIMENSION_LEAF;
 use crate::layout::{
-    Hit, Material, PARAMETER_BUMP, PARAMETER_NORMAL, SceneView, TEXTURES_MOST, load_material, load_texture,
+    Hit, MAX_LEAVES, MODEL_BLEND, Material, PARAMETER_BUMP, PARAMETER_NORMAL, SceneView, TEXTURES_MOST, load_material, load_texture,
 };
 use crate::shading::coordinate::texture_uv;
 use crate::shading::footprint::{cone_footprint, mapped_normal, raised_normal, texture_gradients};
-use crate::shading::math::{div, max_};
+use crate::shading::math::{clamp_, div, max_};
 use crate::shading::parameter::{apply_parameter, channel_value};
+use crate::shading::sampling::{SampleKey, sample_1d};
 use crate::shading::texture::{filter_texture, texture_detail};
 use crate::trace::surface::Surface;
 use crate::trace::tangent::gradients_at;
 use glam::{Vec2, Vec3};
 
-/// The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour; a normal or
-/// bump map turns `surface.normal`. The textures are read by one loop with one place that fetches, as each place is
-/// inlined and costs compile time; a material without them pays a comparison.
-pub fn material_at(scene: &SceneView, direction: Vec3, hit: &Hit, surface: &mut Surface) -> Material {
-    let mut material = load_material(scene, surface.material);
-    material.color *= surface.color;
+/// `bare` with its textures applied, at `surface`, found for `hit` along `direction` (unit); a normal or bump map turns
+/// `surface.normal`. One loop with one place that fetches, as each place is inlined and costs compile time.
+fn apply_textures(scene: &SceneView, bare: Material, direction: Vec3, hit: &Hit, surface: &mut Surface) -> Material {
+    let mut material = bare;
     if material.texture_count == 0 {
         return material;
     }
@@ -57,6 +57,32 @@ pub fn material_at(scene: &SceneView, direction: Vec3, hit: &Hit, surface: &mut 
         } else {
             material = apply_parameter(material, texture.parameter, value, texture.scale);
         }
+    }
+    material
+}
+
+/// The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour. Of a blend it is
+/// one that is none, drawn by the weights, (1 - extra) of the first and extra of the second; `surface.material` names it.
+/// `key`: of the path, which meets one surface at most.
+pub fn material_at(scene: &SceneView, direction: Vec3, hit: &Hit, key: SampleKey, surface: &mut Surface) -> Material {
+    let mut material = load_material(scene, surface.material);
+    let mut u = 0.0;
+    if material.model == MODEL_BLEND {
+        u = sample_1d(key, DIMENSION_LEAF);
+    }
+    for level in 0..MAX_LEAVES {
+        material.color *= surface.color;
+        material = apply_textures(scene, material, direction, hit, surface);
+        // Bake lets no blend be deeper.
+        if material.model != MODEL_BLEND || level + 1 == MAX_LEAVES {
+            break;
+        }
+        let weight = clamp_(material.extra, 0.0, 1.0);
+        let second = u < weight;
+        // What is left of u is as random again.
+        u = if second { div(u, weight) } else { div(u - weight, 1.0 - weight) };
+        surface.material = if second { material.table + 1 } else { material.table };
+        material = load_material(scene, surface.material);
     }
     material
 }

@@ -1,6 +1,6 @@
 //! Ray tracing as a recursive local model. Source: Whitted 1980, "An Improved Illumination Model for Shaded Display".
 
-use super::local::{facing_normal, is_hidden_back, own_weight};
+use super::local::{facing_normal, is_hidden_back};
 use super::{LOBE_MIRROR, LOBE_REFRACT, Queues, push_path};
 use crate::layout::{
     MODEL_DIELECTRIC, MODEL_ROUGH_DIELECTRIC, MODEL_THIN_DIELECTRIC, Material, PathState, SceneView, T_INFINITE,
@@ -9,7 +9,7 @@ use crate::shading::delta::thin_reflectance;
 use crate::shading::dielectric::refract_local;
 use crate::shading::frame::{frame_from_normal, to_local, to_world};
 use crate::shading::fresnel::fresnel_dielectric;
-use crate::shading::material::mirror_weight;
+use crate::shading::material::{mirror_weight, own_weight};
 use crate::shading::math::{dot3, rcp};
 use crate::shading::sampling::hash_combine;
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_max};
@@ -79,9 +79,7 @@ pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, mat
     let thin = material.model == MODEL_THIN_DIELECTRIC;
     let reflectance =
         if thin { thin_reflectance(wo_local.z, material.eta.x) } else { fresnel_dielectric(wo_local.z, eta) };
-    let tint = material.color * reflectance;
-    let mirrored = Vec4::new(tint.x, tint.y, tint.z, reflectance);
-    push_branch(scene, path, surface, mirror_direction(surface, wo), mirrored, LOBE_MIRROR, queues);
+    push_branch(scene, path, surface, mirror_direction(surface, wo), Vec4::splat(reflectance), LOBE_MIRROR, queues);
     let weight = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
     if thin {
         push_branch(scene, path, surface, path.ray.direction, weight, LOBE_REFRACT, queues);

@@ -6,13 +6,12 @@
 
 use super::twins::{FAMILIES, Family, Mismatch, compare};
 use crate::render::RenderError;
-use crate::render::vulkan::{Context, DeviceInfo};
+use crate::render::vulkan::{Context, DeviceInfo, user_cache, write_whole};
 use crate::shaders::{Fetch, kernel};
 use serde::{Deserialize, Serialize};
-use std::fs::{self, File};
-use std::io::{self, Read};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::fs::File;
+use std::io::Read;
+use std::path::PathBuf;
 
 /// Sets of arguments each twin is run with.
 pub const COUNT: usize = 1 << 16;
@@ -53,13 +52,9 @@ struct Answer {
 }
 
 impl Cache {
-    /// `gonio/exact/` in `$XDG_CACHE_HOME` or `~/.cache`; keeps nothing where there is neither.
+    /// `exact/` in the user's cache folder; keeps nothing where there is none.
     pub fn user() -> Self {
-        // A relative path is invalid by the XDG Base Directory Specification, and to be ignored.
-        let is_usable = |path: &PathBuf| path.is_absolute();
-        let named = std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from).filter(is_usable);
-        let base = named.or_else(|| std::env::home_dir().filter(is_usable).map(|home| home.join(".cache")));
-        Self { folder: base.map(|base| base.join("gonio").join("exact")) }
+        Self { folder: user_cache().map(|folder| folder.join("exact")) }
     }
 
     /// Keeps answers in this folder, which is made when needed.
@@ -94,24 +89,13 @@ impl Cache {
     fn store(&self, key: &str, exactness: &Exactness) {
         let Some(path) = self.path(key) else { return };
         let answer = Answer { key: key.to_owned(), exactness: exactness.clone() };
-        if let Err(error) = write_whole(&path, &answer) {
+        let written = serde_json::to_string(&answer)
+            .map_err(std::io::Error::from)
+            .and_then(|text| write_whole(&path, text.as_bytes()));
+        if let Err(error) = written {
             log::debug!("cannot keep the strictness probe's answer in {}: {error}", path.display());
         }
     }
-}
-
-/// Writes under a temporary name, then renames, so that no one ever reads half an answer.
-fn write_whole(path: &Path, answer: &Answer) -> io::Result<()> {
-    static WRITES: AtomicU32 = AtomicU32::new(0);
-    let text = serde_json::to_string(answer)?;
-    fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))?;
-    let number = WRITES.fetch_add(1, Ordering::Relaxed);
-    let temporary = path.with_extension(format!("{}-{number}.tmp", std::process::id()));
-    let written = fs::write(&temporary, text).and_then(|()| fs::rename(&temporary, path));
-    if written.is_err() {
-        let _ = fs::remove_file(&temporary);
-    }
-    written
 }
 
 /// Runs every twin on the device of `context`, or finds the answer in `cache`.

@@ -2,6 +2,7 @@
 
 mod bad_files;
 mod bad_text;
+mod bench;
 mod films;
 mod messages;
 mod parity;

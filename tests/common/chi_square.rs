@@ -177,3 +177,38 @@ pub fn test_sampler(
     expected[Z_CELLS * PHI_CELLS] = (1.0 - integral).max(0.0) * f64::from(samples);
     (chi_square(&observed, &expected), integral)
 }
+
+/// `test_sampler` over the whole sphere.
+pub fn test_sphere_sampler(
+    samples: u32,
+    mut sample: impl FnMut() -> Option<Vec3>,
+    pdf: &dyn Fn(Vec3) -> f64,
+) -> (ChiSquare, f64) {
+    let tau = std::f64::consts::TAU;
+    let mut observed = vec![0u64; 2 * Z_CELLS * PHI_CELLS + 1];
+    for _ in 0..samples {
+        let cell = match sample() {
+            Some(w) => {
+                let z = (((f64::from(w.z) + 1.0) * Z_CELLS as f64) as usize).min(2 * Z_CELLS - 1);
+                let turn = libm::atan2(f64::from(w.y), f64::from(w.x)) / tau;
+                let phi = (((turn - turn.floor()) * PHI_CELLS as f64) as usize).min(PHI_CELLS - 1);
+                z * PHI_CELLS + phi
+            }
+            None => 2 * Z_CELLS * PHI_CELLS,
+        };
+        observed[cell] += 1;
+    }
+    let mut expected = vec![0.0; 2 * Z_CELLS * PHI_CELLS + 1];
+    let mut integral = 0.0;
+    for z in 0..2 * Z_CELLS {
+        for phi in 0..PHI_CELLS {
+            let z_range = (z as f64 / Z_CELLS as f64 - 1.0, (z + 1) as f64 / Z_CELLS as f64 - 1.0);
+            let phi_range = (tau * phi as f64 / PHI_CELLS as f64, tau * (phi + 1) as f64 / PHI_CELLS as f64);
+            let part = integrate_cell(pdf, z_range, phi_range, 3);
+            integral += part;
+            expected[z * PHI_CELLS + phi] = part * f64::from(samples);
+        }
+    }
+    expected[2 * Z_CELLS * PHI_CELLS] = (1.0 - integral).max(0.0) * f64::from(samples);
+    (chi_square(&observed, &expected), integral)
+}

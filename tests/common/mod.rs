@@ -98,7 +98,14 @@ pub fn globe(rows: u32) -> Mesh {
 }
 
 pub fn object(geometry: Geometry, transform: Transform) -> Object {
-    Object { name: "object".into(), geometry, transform, material: Some(MaterialId(0)), casts_shadow: None }
+    Object {
+        name: "object".into(),
+        geometry,
+        transform,
+        material: Some(MaterialId(0)),
+        casts_shadow: None,
+        shading: None,
+    }
 }
 
 /// Each mesh once, where it is.
@@ -121,6 +128,7 @@ pub fn empty_scene() -> Scene {
             unit_exponent: 0,
             tonemap: ToneMap::Clamp,
             exposure: 0.0,
+            gamma: None,
         },
         settings: RenderSettings {
             integrator: Integrator::Whitted,
@@ -132,6 +140,7 @@ pub fn empty_scene() -> Scene {
             rr_depth: 5,
             clamp: None,
             shadows: true,
+            shading: Shading::Phong,
         },
         camera: Camera {
             eye: Vec3::new(0.0, 0.0, 5.0),

@@ -70,6 +70,7 @@ pub fn film(scene: &Scene, data: &SceneData) -> Film {
         aovs: data.header.aovs != 0,
         tonemap: scene.film.tonemap,
         exposure: scene.film.exposure,
+        gamma: scene.film.gamma,
     })
 }
 

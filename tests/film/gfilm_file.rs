@@ -76,7 +76,7 @@ fn malformed_headers_are_refused_with_the_reason() {
         ("sample range 0..16777217", |h| h["samples"] = serde_json::json!([[0, 16_777_217]])),
         ("sample ranges overlap", |h| h["samples"] = serde_json::json!([[0, 4], [3, 5]])),
         ("scene_digest is \"12\"", |h| h["scene_digest"] = "12".into()),
-        ("tonemap is \"filmic\"; allowed: clamp, normalise, reinhard", |h| h["tonemap"] = "filmic".into()),
+        ("tonemap is \"filmic\"; allowed: clamp, normalise, reinhard, aces, agx", |h| h["tonemap"] = "filmic".into()),
         ("unknown field `surprise`", |h| h["surprise"] = 1.into()),
         ("missing field `seed`", |h| drop(h.as_object_mut().unwrap().remove("seed"))),
         ("invalid type: null", |h| h["exposure"] = serde_json::Value::Null),

@@ -29,6 +29,7 @@ fn spec() -> FilmSpec {
         aovs: true,
         tonemap: ToneMap::Reinhard,
         exposure: -0.3,
+        gamma: Some(1.8),
     }
 }
 

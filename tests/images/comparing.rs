@@ -200,7 +200,7 @@ fn merge_adds_films_converts_them_and_names_what_does_not_fit() {
     let mut other = film_of(8, &[[0.0; 4]; 32], |_| {});
     let mut second = gonio::film::Film::new(other.spec().clone());
     second.record(1..2, 0, 0);
-    other.set_display(gonio::scene::ToneMap::Clamp, 0.0);
+    other.set_display(gonio::scene::ToneMap::Clamp, 0.0, None);
     fs::write(path("a.gfilm"), encode(&film, Format::Gfilm, false)).unwrap();
     fs::write(path("b.gfilm"), encode(&second, Format::Gfilm, false)).unwrap();
     fs::write(path("same.gfilm"), encode(&other, Format::Gfilm, false)).unwrap();
@@ -209,9 +209,21 @@ fn merge_adds_films_converts_them_and_names_what_does_not_fit() {
     let mut expected = film.clone();
     expected.merge(&second).unwrap();
     assert_eq!(read_film(Path::new(&path("ab.gfilm"))).unwrap().hash(), expected.hash());
-    run(&[&path("ab.gfilm"), "-o", &path("ab.png"), "--bits", "16", "--exposure", "-1.5", "--tonemap", "reinhard"])
-        .unwrap();
-    expected.set_display(gonio::scene::ToneMap::Reinhard, -1.5);
+    run(&[
+        &path("ab.gfilm"),
+        "-o",
+        &path("ab.png"),
+        "--bits",
+        "16",
+        "--exposure",
+        "-1.5",
+        "--tonemap",
+        "reinhard",
+        "--gamma",
+        "2.2",
+    ])
+    .unwrap();
+    expected.set_display(gonio::scene::ToneMap::Reinhard, -1.5, Some(2.2));
     assert_eq!(fs::read(path("ab.png")).unwrap(), encode(&expected, Format::Png, true));
 
     let failure = |args: &[&str]| {

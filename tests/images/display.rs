@@ -1,9 +1,8 @@
 //! Exposure, tone curves, sRGB, integers.
 
 use gonio::film::Image;
-use gonio::film::display::{
-    Display, encode, quantise, srgb_decode, srgb_encode, tone_map, tonemap_from_name, tonemap_name,
-};
+use gonio::film::display::{Display, encode, quantise, srgb_decode, srgb_encode, tone_map};
+use gonio::film::tone::{TONEMAP_NAMES, tone_curve, tonemap_from_name, tonemap_name};
 use gonio::scene::ToneMap;
 
 fn image(pixels: &[[f32; 4]]) -> Image {
@@ -11,7 +10,7 @@ fn image(pixels: &[[f32; 4]]) -> Image {
 }
 
 fn shown(tonemap: ToneMap, exposure: f32, pixels: &[[f32; 4]]) -> Vec<[f64; 4]> {
-    tone_map(&image(pixels), &Display { tonemap, exposure, transparent: false })
+    tone_map(&image(pixels), &Display { tonemap, exposure, gamma: None, transparent: false })
 }
 
 #[test]
@@ -44,9 +43,72 @@ fn reinhard_maps_luminance_l_to_l_over_one_plus_l_and_keeps_the_hue() {
     assert!(shown(ToneMap::Reinhard, 0.0, &[[f32::INFINITY, 0.0, 0.0, 1.0]])[0].iter().all(|v| v.is_finite()));
 }
 
+/// Khronos' UnlitTest through the ACES fit with light divided by .6 and gamma 2.2, as Cycles and Babylon.js store it.
+#[test]
+fn aces_shows_the_unlit_test_as_other_renderers_do() {
+    let half = srgb_decode(128.0 / 255.0) as f32;
+    let stops = (1.0f32 / 0.6).log2();
+    let display = Display { tonemap: ToneMap::Aces, exposure: stops, gamma: Some(2.2), transparent: false };
+    let codes = encode(&image(&[[1.0, half, 0.0, 1.0], [0.0, half, 1.0, 1.0]]), &display, 255);
+    // Their WebP files say (238, 150, 37) and (38, 140, 224); lossy compression moves a code by up to three.
+    for (code, want) in codes.iter().flat_map(|p| &p[..3]).zip([238, 150, 37, 38, 140, 224]) {
+        assert!(code.abs_diff(want) <= 3, "{codes:?}");
+    }
+}
+
+#[test]
+fn aces_shows_middle_grey_as_a_tenth_and_loses_hue_at_the_top() {
+    let grey = tone_curve(ToneMap::Aces, [0.18; 3]);
+    assert!(grey.iter().all(|v| (v - 0.105).abs() < 0.001), "{grey:?}");
+    assert_eq!(tone_curve(ToneMap::Aces, [0.0; 3]).map(|v| v < 1e-3), [true; 3]);
+    assert_eq!(tone_curve(ToneMap::Aces, [f64::from(f32::MAX); 3]), [1.0; 3]);
+    let [r, g, _] = tone_curve(ToneMap::Aces, [100.0, 1.0, 1.0]);
+    assert!(r == 1.0 && g > 0.3, "{r} {g}");
+}
+
+/// The sigmoid passes .5 with slope 2 at middle grey, ten of its 16.5 stops from black (Sobotka 2022).
+#[test]
+fn agx_shows_middle_grey_in_the_middle_and_keeps_grey_grey() {
+    let encoded = |light: f64| {
+        let [r, g, b] = tone_curve(ToneMap::Agx, [light; 3]).map(|v| v.powf(1.0 / 2.2));
+        // The published matrices are inverses of each other to three digits.
+        assert!((r - g).abs() < 3e-4 && (g - b).abs() < 3e-4, "{r} {g} {b}");
+        g
+    };
+    assert!((encoded(0.18) - 0.5).abs() < 0.004, "{}", encoded(0.18));
+    let slope = (encoded(0.18 * 2f64.powf(0.1)) - encoded(0.18 * 2f64.powf(-0.1))) / (0.2 / 16.5);
+    assert!((slope - 2.0).abs() < 0.1, "{slope}");
+    assert!(encoded(0.0) < 0.003 && encoded(1e-9) < 0.003);
+    assert!(encoded(0.18 * 2f64.powf(6.5)) > 0.99 && encoded(f64::from(f32::MAX)) > 0.99);
+}
+
+#[test]
+fn curves_rise_and_agx_fades_bright_colours_to_white() {
+    for (name, curve) in TONEMAP_NAMES {
+        // AgX's polynomial dips by its own error below its eighth stop.
+        let stops: Vec<f64> = (-20..=100).map(|i| tone_curve(curve, [2f64.powf(f64::from(i) / 10.0); 3])[1]).collect();
+        assert!(stops.windows(2).all(|pair| pair[0] <= pair[1]), "{name}: {stops:?}");
+    }
+    let ratio = |curve, light: f64| {
+        let [r, g, _] = tone_curve(curve, [light, light * 0.1, light * 0.1]);
+        g / r
+    };
+    assert!(ratio(ToneMap::Agx, 16.0) > 0.7 && ratio(ToneMap::Agx, 0.1) < 0.3);
+    assert!((ratio(ToneMap::Reinhard, 1.0) - 0.1).abs() < 1e-12);
+}
+
+#[test]
+fn a_gamma_replaces_the_srgb_curve_and_leaves_alpha_alone() {
+    let display = |gamma| Display { tonemap: ToneMap::Clamp, exposure: 0.0, gamma, transparent: true };
+    let pixels = image(&[[0.25, 0.5, 1.0, 1.0], [0.0, 0.25, 0.5, 0.5]]);
+    assert_eq!(encode(&pixels, &display(Some(2.0)), 255), [[128, 180, 255, 255], [0, 180, 255, 128]]);
+    assert_eq!(encode(&pixels, &display(Some(1.0)), 100), [[25, 50, 100, 100], [0, 50, 100, 50]]);
+    assert_eq!(encode(&pixels, &display(None), 255)[0], [137, 188, 255, 255]);
+}
+
 #[test]
 fn transparent_pictures_are_unpremultiplied_before_the_curve() {
-    let display = |tonemap| Display { tonemap, exposure: 0.0, transparent: true };
+    let display = |tonemap| Display { tonemap, exposure: 0.0, gamma: None, transparent: true };
     let pixels = image(&[[0.25, 0.5, 0.0, 0.5], [0.5, 0.5, 0.5, 0.0], [2.0, 0.0, 0.0, 1.0]]);
     let clamped = tone_map(&pixels, &display(ToneMap::Clamp));
     assert_eq!(clamped, [[0.5, 1.0, 0.0, 0.5], [0.0; 4], [1.0, 0.0, 0.0, 1.0]]);
@@ -87,7 +149,7 @@ fn quantising_rounds_to_the_nearest_code_and_saturates() {
 #[test]
 fn displayed_codes_are_these_on_every_machine() {
     let pixels: Vec<[f32; 4]> = (0..1 << 14).map(|i| [i as f32 / 16_000.0, i as f32 / 777.0, 0.01, 1.0]).collect();
-    let display = Display { tonemap: ToneMap::Reinhard, exposure: 0.7, transparent: false };
+    let display = Display { tonemap: ToneMap::Reinhard, exposure: 0.7, gamma: None, transparent: false };
     let codes = encode(&image(&pixels), &display, 65_535);
     let bytes: Vec<u8> = codes.iter().flatten().flat_map(|code| code.to_le_bytes()).collect();
     assert_eq!(blake3::hash(&bytes).to_string()[..16], *"1c9b970472d80d58");
@@ -95,8 +157,8 @@ fn displayed_codes_are_these_on_every_machine() {
 
 #[test]
 fn tone_curves_are_known_by_the_names_they_have() {
-    for curve in [ToneMap::Clamp, ToneMap::Normalise, ToneMap::Reinhard] {
-        assert_eq!(tonemap_from_name(tonemap_name(curve)), Ok(curve));
+    for (name, curve) in TONEMAP_NAMES {
+        assert_eq!((tonemap_name(curve), tonemap_from_name(name)), (name, Ok(curve)));
     }
-    assert_eq!(tonemap_from_name("aces").unwrap_err(), "allowed: clamp, normalise, reinhard");
+    assert_eq!(tonemap_from_name("filmic").unwrap_err(), "allowed: clamp, normalise, reinhard, aces, agx");
 }

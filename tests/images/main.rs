@@ -28,6 +28,7 @@ fn film_of(width: u32, pixels: &[[f32; 4]], change: impl Fn(&mut FilmSpec)) -> F
         aovs: false,
         tonemap: ToneMap::Clamp,
         exposure: 0.0,
+        gamma: None,
     };
     change(&mut spec);
     let mut film = Film::new(spec);

@@ -118,7 +118,7 @@ records! {
         light_count, material_count, first_instance, first_top_instance, first_face, first_vertex, first_material,
         first_light, first_texture, first_texel, first_table, film_scale, hide_background, aovs, top_margin,
         emitter_count, first_emitter, environment_maps, first_environment_map, emitter_table, environment_density,
-        rr_depth, clamp, level_count, _pad0, _pad1,
+        rr_depth, clamp, level_count, glows, _pad0,
     }
     Batch {
         crop_x, crop_y, crop_width, crop_height, first_pixel, pixel_count, first_sample, sample_count, slot_count,
@@ -169,7 +169,7 @@ constants! {
     INVALID
     CAMERA_PERSPECTIVE CAMERA_ORTHOGRAPHIC
     MAX_LEVELS STACK_SIZE
-    KIND_MESH KIND_SPHERE INSTANCE_NO_SHADOW INSTANCE_MIRRORED
+    KIND_MESH KIND_SPHERE INSTANCE_NO_SHADOW INSTANCE_MIRRORED INSTANCE_FLAT INSTANCE_GOURAUD
     INTEGRATOR_LOCAL INTEGRATOR_WHITTED INTEGRATOR_PATH
     SAMPLER_SOBOL SAMPLER_STRATIFIED SAMPLER_INDEPENDENT
     FILTER_BOX FILTER_TENT FILTER_TABLE FILTER_KNOTS

@@ -63,7 +63,7 @@ void main() {
         result(1u, albedo_material(m).y);
         result4(2u, mirror_weight(m, argument(5u)));
         result_u(6u, is_delta(m) ? 1u : 0u);
-        result(7u, emission_material(m).x);
+        result(7u, emission_material(m).x + own_weight(m));
         break;
     }
 }

@@ -2,10 +2,10 @@
 
 use super::{Film, facts};
 use crate::film::display::encode;
-use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
+use png::{BitDepth, ColorType, Encoder, ScaledFloat, SrgbRenderingIntent};
 use std::io::{self, Write};
 
-/// The displayed film, 8 or 16 bits, tagged sRGB, with the facts as text.
+/// The displayed film, 8 or 16 bits, tagged sRGB or with its gamma, with the facts as text.
 pub fn write(film: &Film, sixteen_bit: bool, out: &mut dyn Write) -> io::Result<()> {
     let image = film.resolve();
     let (bits, max) = if sixteen_bit { (BitDepth::Sixteen, 65_535) } else { (BitDepth::Eight, 255) };
@@ -21,7 +21,11 @@ pub fn write(film: &Film, sixteen_bit: bool, out: &mut dyn Write) -> io::Result<
     let mut encoder = Encoder::new(out, image.width, image.height);
     encoder.set_color(color);
     encoder.set_depth(bits);
-    encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    match display.gamma {
+        None => encoder.set_source_srgb(SrgbRenderingIntent::Perceptual),
+        // Said, so that a viewer that knows can show the light that was meant.
+        Some(gamma) => encoder.set_source_gamma(ScaledFloat::new(1.0 / gamma)),
+    }
     for (keyword, text) in facts(film) {
         // tEXt is Latin-1; iTXt is UTF-8, and known to fewer programs.
         match text.is_ascii() {

@@ -1,5 +1,6 @@
 //! A device in use: queue, submissions, transfers.
 
+use super::cache::PipelineCache;
 use super::device::{DeviceChoice, DeviceInfo};
 use super::error::VulkanError;
 use super::instance::Instance;
@@ -31,6 +32,8 @@ pub struct Device {
     info: DeviceInfo,
     /// `None` only while dropping.
     allocator: Mutex<Option<Allocator>>,
+    /// `None` until the device is set up.
+    pipelines: Option<PipelineCache>,
     /// A submission never came back: nothing may be destroyed any more.
     stuck: AtomicBool,
     instance: Arc<Instance>,
@@ -61,7 +64,12 @@ impl Device {
             | vk::Result::ERROR_TOO_MANY_OBJECTS => VulkanError::Device(format!("cannot open {}: {error}", info.name)),
             _ => VulkanError::NoDevice(format!("cannot open {}: {error}", info.name)),
         })?;
-        let device = Device { allocator: Mutex::new(None), stuck: AtomicBool::new(false), raw, info, instance };
+        // `Drop` destroys what was made before a failure.
+        let mut device =
+            Device { raw, info, allocator: Mutex::new(None), pipelines: None, stuck: AtomicBool::new(false), instance };
+        // SAFETY: `physical` is of this instance.
+        let properties = unsafe { device.instance.raw.get_physical_device_properties(physical) };
+        device.pipelines = Some(PipelineCache::load(&device.raw, &device.info, &properties)?);
         const MIB: u64 = 1 << 20;
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: device.instance.raw.clone(),
@@ -82,6 +90,11 @@ impl Device {
 
     pub(super) fn raw(&self) -> &ash::Device {
         &self.raw
+    }
+
+    /// Where compiled pipelines are looked up and kept.
+    pub(super) fn pipeline_cache(&self) -> vk::PipelineCache {
+        self.pipelines.as_ref().map_or(vk::PipelineCache::null(), PipelineCache::raw)
     }
 
     pub(super) fn allocator(&self) -> AllocatorGuard<'_> {
@@ -118,8 +131,14 @@ impl Drop for Device {
             return;
         }
         drop(allocator); // frees memory, so it goes before the device
-        // SAFETY: every object of the device held an `Arc` of it, so none is left.
-        unsafe { self.raw.destroy_device(None) };
+        if let Some(pipelines) = &self.pipelines {
+            pipelines.store(&self.raw);
+        }
+        // SAFETY: every object of the device held an `Arc` of it, so none is left; destroying a null handle does nothing.
+        unsafe {
+            self.raw.destroy_pipeline_cache(self.pipeline_cache(), None);
+            self.raw.destroy_device(None);
+        }
     }
 }
 

@@ -143,9 +143,9 @@ impl Inner {
             .name(c"main")
             .specialization_info(&specialization);
         let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(self.layout);
-        // SAFETY: the module and the layout are of this device; the module is not needed afterwards.
+        // SAFETY: module, layout and cache are of this device; the module is not needed afterwards.
         let pipelines = unsafe {
-            let pipelines = raw.create_compute_pipelines(vk::PipelineCache::null(), &[info], None);
+            let pipelines = raw.create_compute_pipelines(self.device.pipeline_cache(), &[info], None);
             raw.destroy_shader_module(module, None);
             pipelines
         };

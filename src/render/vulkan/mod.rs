@@ -1,9 +1,10 @@
 //! The Vulkan backend: the only folder with `unsafe`.
 //!
 //! Bottom up: `instance` and `device` (what is there), `context` (a device in use: submissions, transfers), `memory`
-//! (buffers), `reflect` and `kernel` (pipelines), `record` (commands); on these `scene` (pages), `plan` and `pace` (sizes),
+//! (buffers), `reflect`, `kernel` and `cache` (pipelines), `record` (commands); on these `scene` (pages), `plan` and `pace` (sizes),
 //! `queues` (the wavefront), `renderer` and `inspect`.
 
+mod cache;
 mod context;
 mod device;
 mod error;
@@ -20,6 +21,7 @@ mod renderer;
 mod scene;
 mod validation;
 
+pub use cache::{user_cache, write_whole};
 pub use context::{BufferSpec, Context, Device, Submission};
 pub use device::{
     DeviceChoice, DeviceInfo, DeviceKind, Limits, STORAGE_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_STORAGE_BUFFERS,

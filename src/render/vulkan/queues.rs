@@ -8,8 +8,11 @@ use super::plan::QueuePlan;
 use super::record::Recorder;
 use super::scene::SceneBuffers;
 use crate::bake::SceneData;
-use crate::layout::{Batch, Control, DispatchArguments, KIND_SPHERE};
+use crate::layout::{
+    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, KIND_SPHERE,
+};
 use crate::shaders;
+use glam::Vec3;
 use std::mem::offset_of;
 
 /// The wavefront's kernels in the order in which they run.
@@ -45,8 +48,10 @@ const NAMES: Stages<&str> = Stages {
 };
 
 /// Specialisation constants that say what the scene uses (`shaders/kernels/bindings.glsl`).
-fn scene_constants(data: &SceneData) -> [(u32, u32); 7] {
+fn scene_constants(data: &SceneData) -> [(u32, u32); 14] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
+    let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
+    let textures = data.materials.iter().any(|material| material.texture_count > 0);
     let models = data.materials.iter().fold(0, |mask, material| mask | 1 << material.model);
     [
         (5, data.stack_depth.max(1)),
@@ -56,6 +61,14 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 7] {
         (9, data.header.filter_kind),
         (10, u32::from(spheres)),
         (11, data.header.aovs),
+        (12, data.emitters.iter().fold(0, |mask, emitter| mask | 1 << emitter.kind)),
+        (13, u32::from(data.emitters.iter().any(|emitter| emitter.flags & EMITTER_TEXTURED != 0))),
+        (14, data.header.environment_maps),
+        // Textures may cut holes.
+        (15, u32::from(!data.textures.is_empty() || data.materials.iter().any(|material| material.k_t > 0.0))),
+        (16, u32::from(data.materials.iter().any(|material| material.absorption != Vec3::ZERO))),
+        (17, u32::from(facets)),
+        (18, u32::from(textures)),
     ]
 }
 

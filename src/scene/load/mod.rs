@@ -1,8 +1,10 @@
 //! Scene files: one file or folder per format.
 
 mod bounds;
+pub mod builtin;
 pub mod gltf;
 pub mod image;
+mod merl;
 mod meter;
 pub mod mitsuba;
 pub mod obj;
@@ -23,7 +25,8 @@ use std::path::Path;
 const STDIN_MAX: u64 = 64 << 20;
 
 /// Loads the scene in `path`, its format told by the extension: `.toml`, `.obj`, `.gltf`, `.glb`, `.ply`, `.xml` (Mitsuba);
-/// `-` is TOML on standard input. What the scene lacks to be a picture (a mesh has no camera) is staged.
+/// `-` is TOML on standard input, and `NAME:SIZE` may be a built-in scene (`builtin`). What the scene lacks to be a picture
+/// (a mesh has no camera) is staged.
 pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
     load_with(path, overrides, &[])
 }
@@ -53,6 +56,12 @@ pub fn load_with(path: &Path, overrides: &[Override], defines: &[(String, String
             return Err(SceneError::bad(Location::file(name), message));
         }
         return toml::scene_from_text(name, text::utf8(name, bytes)?, overrides);
+    }
+    if let Some(scene) = builtin::load(path) {
+        let mut scene = scene?;
+        toml::override_film(&mut scene, overrides)?;
+        toml::override_settings(&mut scene, overrides)?;
+        return Ok(scene);
     }
     if extension(path) == "toml" {
         return toml::scene_from_text(path, text::utf8(path, text::read_bytes(path)?)?, overrides);

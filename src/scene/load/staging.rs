@@ -7,7 +7,7 @@
 use super::bounds::{Bounds, Room, free_distance};
 use crate::scene::{
     Attenuation, Background, Camera, Film, Filter, Geometry, Integrator, IntensityUnit, Light, LightKind, Material,
-    MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, ToneMap, Transform, shape,
+    MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, Shading, ToneMap, Transform, shape,
 };
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
@@ -40,6 +40,7 @@ pub fn bare_scene(path: &Path) -> Scene {
             unit_exponent: 0,
             tonemap: ToneMap::Clamp,
             exposure: 0.0,
+            gamma: None,
         },
         settings: RenderSettings {
             integrator: Integrator::Whitted,
@@ -51,6 +52,7 @@ pub fn bare_scene(path: &Path) -> Scene {
             rr_depth: 5,
             clamp: None,
             shadows: true,
+            shading: Shading::Phong,
         },
         camera: NO_CAMERA,
         background: Background::BLACK,
@@ -221,5 +223,6 @@ fn add_ground(scene: &mut Scene, bounds: &Bounds) {
         }),
         material: Some(MaterialId(scene.materials.len() as u32 - 1)),
         casts_shadow: Some(false),
+        shading: None,
     });
 }

@@ -5,7 +5,9 @@
 //! | `quad`, `disk` | centred at the origin in the plane y = 0, facing +y |
 //! | `cuboid`, `sphere_mesh`, `torus` | centred at the origin, the torus around the y axis |
 //! | `cylinder`, `cone`, `lathe`, `teapot` | around the y axis; the first two and the teapot stand on y = 0 |
-//! | `height_field` | centred over the origin, heights along y |
+//! | `height_field`, `terrain` | centred over the origin, heights along y |
+//! | `sphereflake`, `hairball` | around the origin |
+//! | `teapot_field` | on y = 0, centred on the origin |
 //!
 //! Vertices are computed in f64, transcendental functions by `libm`, and rounded once, so the meshes are the same bits
 //! on every machine. Vertices along creases and texture seams are doubled, at bit-equal positions.
@@ -15,21 +17,29 @@
 
 mod flat;
 mod grid;
+mod hairball;
 mod height_field;
 mod lathe;
 mod noise;
 mod normals;
 mod round;
+mod sphereflake;
 mod teapot;
 mod teapot_data;
+mod teapots;
+mod terrain;
 
 pub use flat::{cuboid, quad};
+pub use hairball::hairball;
 pub use height_field::{HeightGrid, height_field};
 pub use lathe::{Profile, ProfileKind, lathe};
 pub use noise::fractal_heights;
 pub use normals::{compute_smooth_normals, repair_normals};
 pub use round::{cone, cylinder, disk, sphere_mesh, torus};
+pub use sphereflake::{SPHEREFLAKE_LEVELS, sphereflake};
 pub use teapot::{TEAPOT_PATCHES, teapot, teapot_control_points};
+pub use teapots::{TEAPOTS_MAX, field_size, teapot_field};
+pub use terrain::{TRIANGLES_MAX, terrain};
 
 /// Fewest segments around an axis.
 pub const SEGMENTS_MIN: u32 = 3;

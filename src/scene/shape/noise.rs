@@ -1,6 +1,7 @@
 //! A fractal landscape that needs no file.
 
 use super::height_field::HeightGrid;
+use rayon::prelude::*;
 
 /// Heights of fractional Brownian motion, about -1 to 1: octaves of gradient noise (Perlin 1985, with the quintic fade of
 /// Perlin 2002 and gradients hashed from the lattice point), each twice as fine and `gain` times as high as the last.
@@ -19,7 +20,7 @@ pub fn fractal_heights(nodes: u32, features: f64, octaves: u32, gain: f64, seed:
         }
         sum as f32
     };
-    HeightGrid { columns: nodes, rows: nodes, heights: (0..nodes * nodes).map(height).collect() }
+    HeightGrid { columns: nodes, rows: nodes, heights: (0..nodes * nodes).into_par_iter().map(height).collect() }
 }
 
 /// About -1 to 1, zero at lattice points.
@@ -28,7 +29,7 @@ fn gradient_noise(x: f64, y: f64, seed: u32) -> f64 {
     let (fx, fy) = (x - x0, y - y0);
     let corner = |i: f64, j: f64| {
         // Lattice coordinates are below 2^28: `features` times 2^15.
-        let hash = mix_bits((x0 + i) as i64 as u32, (y0 + j) as i64 as u32, seed);
+        let hash = hash3((x0 + i) as i64 as u32, (y0 + j) as i64 as u32, seed);
         let direction = super::grid::angle_of_turn(f64::from(hash) / 4_294_967_296.0);
         direction.x * (fx - i) + direction.y * (fy - j)
     };
@@ -41,7 +42,7 @@ fn gradient_noise(x: f64, y: f64, seed: u32) -> f64 {
 }
 
 /// Avalanche of three words: the finaliser of MurmurHash3 (Appleby 2008) over each in turn.
-fn mix_bits(x: u32, y: u32, seed: u32) -> u32 {
+pub(super) fn hash3(x: u32, y: u32, seed: u32) -> u32 {
     let finalise = |h: u32| {
         let h = (h ^ (h >> 16)).wrapping_mul(0x85eb_ca6b);
         let h = (h ^ (h >> 13)).wrapping_mul(0xc2b2_ae35);

@@ -33,17 +33,16 @@ pub struct Family {
 }
 
 /// All of them.
-pub static FAMILIES: &[Family] =
-    &[
-        math::FAMILY,
-        film::FAMILY,
-        shading::FAMILY,
-        models::FAMILY,
-        warp::FAMILY,
-        trace::FAMILY,
-        path::FAMILY,
-        texture::FAMILY,
-    ];
+pub static FAMILIES: &[Family] = &[
+    math::FAMILY,
+    film::FAMILY,
+    shading::FAMILY,
+    models::FAMILY,
+    warp::FAMILY,
+    trace::FAMILY,
+    path::FAMILY,
+    texture::FAMILY,
+];
 
 /// The arguments of one evaluation, read as the harness in GLSL reads them.
 pub struct In<'a>(&'a [u32]);

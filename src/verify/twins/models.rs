@@ -9,7 +9,8 @@ use crate::layout::{
     MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneHeader, SceneView,
 };
 use crate::shading::material::{
-  albedo_material, ambient_material, emission_material, eval_material, is_delta, mirror_weight, pdf_material, sample_material,
+    albedo_material, ambient_material, emission_material, eval_material, is_delta, mirror_weight, own_weight,
+    pdf_material, sample_material,
 };
 use crate::shading::sampling::{hash_u32, unit_float};
 use crate::verify::inputs::Domain::{self, Below, Direction, Range};
@@ -100,7 +101,7 @@ fn sample(i: &In, o: &mut Out, model: u32) {
 fn rest(i: &In, o: &mut Out, model: u32) {
     let m = material(i, model);
     o.f(ambient_material(&m).x).f(albedo_material(&m).y).v4(mirror_weight(&m, i.f(5))).u(u32::from(is_delta(&m)));
-    o.f(emission_material(&m).x);
+    o.f(emission_material(&m).x + own_weight(&m));
 }
 
 macro_rules! model {

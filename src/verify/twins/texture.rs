@@ -153,7 +153,11 @@ pub const FAMILY: Family = Family {
                     ..Material::default()
                 };
                 let applied = apply_parameter(material, i.u(3), i.v3(0), i.f(4));
-                o.v3(applied.color).f(applied.specular_color.x).f(applied.emission.y).f(applied.m0 + applied.m1_v).f(applied.k_t + applied.extra);
+                o.v3(applied.color)
+                    .f(applied.specular_color.x)
+                    .f(applied.emission.y)
+                    .f(applied.m0 + applied.m1_v)
+                    .f(applied.k_t + applied.extra);
             },
         },
     ],

@@ -4,10 +4,10 @@
 use super::{Family, In, Twin};
 use crate::layout::Camera;
 use crate::shading::camera::camera_ray;
+use crate::shading::coordinate::{finite_or_zero, wrap_coordinate, wrap_texel};
 use crate::shading::filter::sample_tent;
 use crate::shading::frame::frame_from_tangent;
 use crate::shading::sampling::unit_float;
-use crate::shading::coordinate::{finite_or_zero, wrap_coordinate, wrap_texel};
 use crate::shading::warp::{
     cosine_hemisphere_pdf, cosine_hemisphere_to_square, disk_to_square, square_to_cosine_hemisphere, square_to_disk,
     square_to_uniform_hemisphere, square_to_uniform_sphere, square_to_uniform_triangle, uniform_hemisphere_pdf,

@@ -57,7 +57,8 @@ pub(super) fn surface(
     let byte = |v: f64| (v * 255.0 + 0.5).clamp(0.0, 255.0) as u8;
     let texel = |at: u64| {
         let place = [(at % u64::from(width)) as u32, (at / u64::from(width)) as u32];
-        let ([dr, dg, db, a], [sr, sg, sb, shine]) = (diffuse.at(place, width, height), specular.at(place, width, height));
+        let ([dr, dg, db, a], [sr, sg, sb, shine]) =
+            (diffuse.at(place, width, height), specular.at(place, width, height));
         let times = |color: [f64; 3], factor: [f64; 3]| std::array::from_fn(|i| color[i] * factor[i]);
         let found = metallic(times([dr, dg, db], factors[0]), times([sr, sg, sb], factors[1]));
         let [r, g, b] = found.base.map(|c| encode.byte(c));

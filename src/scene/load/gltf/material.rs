@@ -20,7 +20,9 @@ use super::glossy;
 use super::texture::{Textures, coordinate_set};
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::intern;
-use crate::scene::{Channel, Material, Model, Parameter, Principled, Rgb, Scene, Texture, TextureBinding, Transparency};
+use crate::scene::{
+    Channel, Material, Model, Parameter, Principled, Rgb, Scene, Texture, TextureBinding, Transparency,
+};
 use gltf::json::extensions::material::Volume;
 use gltf::json::material::{AlphaMode, NormalTexture};
 use gltf::json::texture::Info;
@@ -119,7 +121,8 @@ impl Maker<'_, '_> {
     fn texture(&mut self, info: &Info, space: ColorSpace) -> Result<Texture, Failure> {
         let set = coordinate_set(info);
         if *self.set.get_or_insert(set) != set {
-            self.notes.insert("textures of one material that want different TEXCOORD sets all use the first".to_owned());
+            self.notes
+                .insert("textures of one material that want different TEXCOORD sets all use the first".to_owned());
         }
         self.textures.texture(info, space, &self.place)
     }
@@ -214,9 +217,10 @@ impl Maker<'_, '_> {
 
 /// A normal texture as any other; its transform is an extension like theirs.
 fn normal_info(normal: &NormalTexture) -> Info {
-    let extensions = normal.extensions.as_ref().and_then(|e| {
-        serde_json::from_value(serde_json::Value::Object(e.others.clone())).ok()
-    });
+    let extensions = normal
+        .extensions
+        .as_ref()
+        .and_then(|e| serde_json::from_value(serde_json::Value::Object(e.others.clone())).ok());
     Info { index: normal.index, tex_coord: normal.tex_coord, extensions, extras: Default::default() }
 }
 

@@ -94,8 +94,12 @@ impl Loader<'_> {
             "integrator" => integrator::read_integrator(self.document, node, &mut self.scene),
             // Others refer to them; what nobody refers to is still checked.
             "bsdf" => self.material(node).map(|_| ()),
-            "texture" | "spectrum" | "sampler" | "film" | "rfilter" => object::Object::open(self.document, node).map(|_| ()),
-            tag if CLASSES.contains(&tag) => Err(self.document.bad(node, format!("<{tag}> is not supported: {NO_MEDIA}"))),
+            "texture" | "spectrum" | "sampler" | "film" | "rfilter" => {
+                object::Object::open(self.document, node).map(|_| ())
+            }
+            tag if CLASSES.contains(&tag) => {
+                Err(self.document.bad(node, format!("<{tag}> is not supported: {NO_MEDIA}")))
+            }
             tag => {
                 let hint = hint(tag, CLASSES.iter().copied());
                 let message = format!("<{tag}> has no meaning in a scene, which holds {}{hint}", CLASSES.join(", "));

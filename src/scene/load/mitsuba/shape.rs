@@ -62,6 +62,7 @@ impl Loader<'_> {
             transform,
             material: Some(material),
             casts_shadow: None,
+            shading: None,
         });
         Ok(())
     }

@@ -77,6 +77,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         transform: Transform::default(),
         material,
         casts_shadow: None,
+        shading: None,
     });
     scene.meshes.push(mesh);
     Ok(scene)

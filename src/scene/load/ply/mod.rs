@@ -38,6 +38,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         transform: Transform::default(),
         material: Some(MaterialId(0)),
         casts_shadow: None,
+        shading: None,
     });
     scene.meshes.push(mesh);
     Ok(scene)

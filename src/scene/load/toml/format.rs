@@ -1,6 +1,7 @@
 //! The tables of the format (see `keys`), in the order of scenes/README.md.
 
 use super::keys::{Key, Kind, Range, Section, key};
+use super::material_format::{LOBE, MATERIAL, TEXTURE};
 
 const ONE_OR_MORE: &str = "one or more tables";
 
@@ -18,6 +19,8 @@ pub static SCENE: Section = Section {
         key("light", Kind::Special(ONE_OR_MORE), "none", "Lights: `[[light]]`"),
     ],
 };
+
+pub const SHADING_NAMES: [&str; 3] = ["flat", "gouraud", "phong"];
 
 pub static RENDER: Section = Section {
     name: "[render]",
@@ -37,7 +40,12 @@ pub static RENDER: Section = Section {
             "`\"sobol\"`",
             "Owen-scrambled Sobol' points (Burley 2020), jittered strata, or plain random numbers",
         ),
-        key("max_depth", Kind::Integer { min: 0, max: 64 }, "8", "Scattering events a path may have: 0 shows what glows, 1 adds light scattered once. Mitsuba counts one more (its -1 is our 64)"),
+        key(
+            "max_depth",
+            Kind::Integer { min: 0, max: 64 },
+            "8",
+            "Scattering events a path may have: 0 shows what glows, 1 adds light scattered once. Mitsuba counts one more (its -1 is our 64)",
+        ),
         key(
             "min_weight",
             Kind::Number(Range::UNIT),
@@ -58,6 +66,12 @@ pub static RENDER: Section = Section {
         ),
         key("shadows", Kind::Boolean, "true", "Trace shadow rays"),
         key(
+            "shading",
+            Kind::Choice(&SHADING_NAMES),
+            "`\"phong\"`",
+            "How triangles are shaded under `local`. `flat`: once, at the centroid with the triangle's normal. `gouraud`: at the corners, each with its own normal, texture value and direction to the eye, and interpolated. `phong`: at every sample with the interpolated normal",
+        ),
+        key(
             "intensity",
             Kind::Choice(&["lecture", "radiometric"]),
             "`\"radiometric\"`",
@@ -74,9 +88,11 @@ pub static FILM: Section = Section {
         key("size", Kind::Special("two integers [width, height] from 1 to 65535"), "[1280, 720]", "Pixels"),
         key(
             "filter",
-            Kind::Special("\"box\", \"tent\", \"gaussian\", \"mitchell\" or a table"),
+            Kind::Special(
+                "\"box\", \"tent\", \"gaussian\", \"mitchell\", \"catmull-rom\", \"blackman-harris\", \"lanczos\" or a table",
+            ),
             "`\"gaussian\"`",
-            "Reconstruction filter; the table's keys are below. Mitchell has negative lobes: sharper, and noisy below some 64 samples",
+            "Reconstruction filter; the table's keys are below. Mitchell, Catmull-Rom and Lanczos have negative lobes: sharper, and noisy below some 64 samples",
         ),
         key(
             "unit",
@@ -86,24 +102,33 @@ pub static FILM: Section = Section {
         ),
         key(
             "tonemap",
-            Kind::Choice(&["clamp", "normalise", "reinhard"]),
+            Kind::Choice(&["clamp", "normalise", "reinhard", "aces", "agx"]),
             "`\"clamp\"`",
-            "Display: cut at 1, divide by the image's maximum, or L/(1+L)",
+            "Display: cut at 1, divide by the image's maximum, L/(1+L) (Reinhard et al. 2002), ACES 1.0 (fit by Hill 2016) or AgX (Sobotka 2022)",
         ),
         key("exposure", Kind::Number(Range::new(-64.0, 64.0)), "0", "Display: stops; +1 doubles"),
+        key(
+            "gamma",
+            Kind::Special("a number from 0.1 to 10 or \"srgb\""),
+            "`\"srgb\"`",
+            "Display: what integers store is light to the power 1/gamma, or the curve of the sRGB standard",
+        ),
     ],
 };
+
+pub const FILTER_NAMES: [&str; 7] =
+    ["box", "tent", "gaussian", "mitchell", "catmull-rom", "blackman-harris", "lanczos"];
 
 pub static FILTER: Section = Section {
     name: "filter = { … }",
     noun: "a filter",
     keys: &[
-        key("type", Kind::Choice(&["box", "tent", "gaussian", "mitchell"]), "required", "Its shape"),
+        key("type", Kind::Choice(&FILTER_NAMES), "required", "Its shape"),
         key(
             "radius",
             Kind::Number(Range::above(0.0, 16.0)),
-            "box 0.5, tent 1, gaussian 1.5, mitchell 2",
-            "Half width, pixels",
+            "box 0.5, tent 1, gaussian 1.5, mitchell 2, catmull-rom 2, blackman-harris 2, lanczos 3",
+            "Half width, pixels; of lanczos also its number of lobes",
         ),
         key("sigma", Kind::Number(Range::above(0.0, 16.0)), "0.5", "Standard deviation, pixels").only(&["gaussian"]),
         key("b", Kind::Number(Range::UNIT), "1/3", "B of Mitchell and Netravali 1988").only(&["mitchell"]),
@@ -166,85 +191,6 @@ pub static BACKGROUND: Section = Section {
     ],
 };
 
-const PHONGS: &[&str] = &["phong", "blinn-phong"];
-const LOCAL: &[&str] = &["lambert", "phong", "blinn-phong", "cook-torrance"];
-const SPECULAR: &[&str] = &["phong", "blinn-phong", "cook-torrance"];
-
-/// Models with a roughness.
-const ROUGH: &[&str] = &["cook-torrance"];
-const TEXTURED: &str = "a file name or a table";
-
-pub static MATERIAL: Section = Section {
-    name: "[[material]]",
-    noun: "[[material]]",
-    keys: &[
-        key("name", Kind::Text, "required", "What objects call it; unique"),
-        key("model", Kind::Choice(&["lambert", "phong", "blinn-phong", "cook-torrance", "mirror", "dielectric", "emissive"]), "`\"lambert\"`", "The illumination model"),
-        key("color", Kind::Color(Range::NOT_NEGATIVE), "0.7; mirror 0.9 or the metal's; cook-torrance metals the metal's; emissive 1", "O_d, the diffuse colour, up to 1; of a mirror its reflectance, up to 1; of `emissive` its radiance").only(&["lambert", "phong", "blinn-phong", "cook-torrance", "mirror", "emissive"]),
-        key("texture", Kind::Special(TEXTURED), "none", "Multiplies `color`, which is 1 unless given; the table's keys are below, as for all that follow").only(&["lambert", "phong", "blinn-phong", "cook-torrance", "mirror", "emissive"]),
-        key("specular_texture", Kind::Special(TEXTURED), "none", "Multiplies `specular_color`").only(&["lambert", "phong", "blinn-phong", "cook-torrance", "dielectric"]),
-        key("emission_texture", Kind::Special(TEXTURED), "none", "Multiplies `emission`, which is 1 unless given").only(LOCAL),
-        key("roughness_texture", Kind::Special(TEXTURED), "none", "Multiplies the roughness, in both directions and of all lobes").only(ROUGH),
-        key("roughness_u_texture", Kind::Special(TEXTURED), "none", "Multiplies the roughness along u alone").only(ROUGH),
-        key("roughness_v_texture", Kind::Special(TEXTURED), "none", "Multiplies the roughness along v alone").only(ROUGH),
-        key("metallic_texture", Kind::Special(TEXTURED), "none", "Multiplies how much of the surface is metal"),
-        key("weight_texture", Kind::Special(TEXTURED), "none", "Multiplies the weight of a mixture"),
-        key("opacity_texture", Kind::Special(TEXTURED), "none", "Multiplies how much of what lies behind the surface covers: black is a hole. Shadows are those of the whole surface").only(LOCAL),
-        key("normal_map", Kind::Special(TEXTURED), "none", "Turns the normal: red towards growing u, green towards growing v (up the image, as OpenGL and glTF have it), (0.5, 0.5, 1) leaves it"),
-        key("bump_map", Kind::Special(TEXTURED), "none", "Heights by which the normal is turned as if the surface were raised"),
-        key("k_a", Kind::Number(Range::NOT_NEGATIVE), "1", "Weight of the ambient term").only(LOCAL),
-        key("k_d", Kind::Number(Range::NOT_NEGATIVE), "lambert 1, phong and blinn-phong 0.7, cook-torrance 1 - k_s", "Weight of the diffuse term").only(LOCAL),
-        key("k_s", Kind::Number(Range::NOT_NEGATIVE), "phong and blinn-phong 0.3, cook-torrance metals 1, else 0.5", "Weight of the specular term; cook-torrance: k_d + k_s = 1").only(SPECULAR),
-        key("k_r", Kind::Number(Range::UNIT), "0", "Weight of a mirror branch added to the local model").only(LOCAL),
-        key("specular_color", Kind::Color(Range::UNIT), "1", "O_s, the colour of highlights and of the `k_r` branch; of a dielectric the factor on refracted light").only(&["lambert", "phong", "blinn-phong", "cook-torrance", "dielectric"]),
-        key("exponent", Kind::Number(Range::new(0.0, 1.0e6)), "32", "n of (V·R)^n or (N·H)^n").only(PHONGS),
-        key("normalisation", Kind::Choice(&["printed", "lafortune", "unit", "1982"]), "phong `\"printed\"`, but `\"lafortune\"` under direct and path, cook-torrance `\"unit\"`", "phong: as `printed` in 1975, or `lafortune` (n+2)/2π. cook-torrance: `unit`, D's projected integral is 1, or `1982`, as that paper prints it, four times brighter").only(&["phong", "cook-torrance"]),
-        key("m", Kind::Number(Range::new(1.0e-3, 2.0)), "0.2", "Rms slope of the Beckmann distribution, the material's roughness").only(&["cook-torrance"]),
-        key("lobes", Kind::Special("one or two tables"), "none", "Weighted sum of Beckmann distributions instead of `m`, such as `[{ m = 0.4, weight = 0.4 }, { m = 0.2, weight = 0.6 }]`").only(&["cook-torrance"]),
-        key("metal", Kind::Choice(&["Cu", "Au", "Ag", "Al", "Cr"]), "none", "Complex index of copper, gold, silver, aluminium or chromium instead of `eta` and `k`").only(&["cook-torrance", "mirror"]),
-        key("eta", Kind::Special("a number from 0.01 to 20, \"glass\", \"water\" or \"diamond\"; with `k` a colour from 0.01 to 20"), "1.5", "Index of refraction relative to the outside: 1.5 glass, 1.333 water, 2.417 diamond").only(&["cook-torrance", "dielectric"]),
-        key("k", Kind::Color(Range::new(0.0, 100.0)), "none", "Extinction coefficient; makes the material a conductor").only(&["cook-torrance"]),
-        key("absorption", Kind::Color(Range::NOT_NEGATIVE), "0", "Beer coefficient inside, per scene unit: after a distance d, e^(-absorption d) is left").only(&["dielectric"]),
-        key("k_t", Kind::Number(Range::UNIT), "0", "Non-refractive transparency: the share of what lies behind").only(LOCAL),
-        key("transparency_mode", Kind::Choice(&["interpolated", "filtered"]), "`\"interpolated\"`", "(1 - k_t) I_1 + k_t I_2, or I_1 + k_t O_t I_2").only(LOCAL),
-        key("transparency_color", Kind::Color(Range::UNIT), "1", "O_t of filtered transparency").only(LOCAL),
-        key("emission", Kind::Color(Range::NOT_NEGATIVE), "0", "Radiance the surface adds by itself; it lights other things under `direct` and `path` only").only(&["lambert", "phong", "blinn-phong", "cook-torrance"]),
-        key("casts_shadow", Kind::Boolean, "false with `k_t` > 0, else true", "Whether it stops shadow rays"),
-    ],
-};
-
-pub static TEXTURE: Section = Section {
-    name: "texture = { … }",
-    noun: "a texture",
-    keys: &[
-        key("file", Kind::Text, "required without `pattern`", "PNG, JPEG, WebP, OpenEXR or Radiance HDR, relative to the scene file"),
-        key("pattern", Kind::Choice(&["checker", "noise", "gradient", "zone-plate"]), "none", "Computed instead of a file, between `colors`: 2 x 2 fields a unit; gradient noise (Perlin 2002) of one feature a unit; a ramp along u, there and back; rings around uv = 0 whose frequency is the distance"),
-        key("colors", Kind::Special("two colours >= 0"), "[0, 1]", "Of a pattern; the first is at the lower left of a checker, at u = 0 of a gradient"),
-        key("octaves", Kind::Integer { min: 1, max: 16 }, "6", "Of noise: each twice as fine as the last"),
-        key("gain", Kind::Number(Range::UNIT), "0.5", "Of noise: strength of an octave over that of the last"),
-        key("seed", Kind::Integer { min: 0, max: u32::MAX as i64 }, "0", "Of noise: another seed, another pattern"),
-        key("wrap", Kind::Special("\"repeat\", \"clamp\", \"mirror\" or two of them [u, v]"), "`\"repeat\"`", "What lies beyond the image's edge"),
-        key("filter", Kind::Choice(&["bilinear", "nearest"]), "`\"bilinear\"`", "Between texels"),
-        key("mipmap", Kind::Boolean, "false", "Read the mean over what a pixel covers (ray cones; trilinear, up to 8 probes along its longer side): less noise from far away. Without it many samples come to the same, and nothing is ever blurred"),
-        key("scale", Kind::Special("a number or two numbers [u, v]"), "1", "Applied first: 4 repeats the image four times"),
-        key("rotate", Kind::Number(Range::new(-3600.0, 3600.0)), "0", "Applied second: turns the image counter-clockwise, degrees"),
-        key("offset", Kind::Special("a number or two numbers [u, v]"), "0", "Applied last, added to the coordinates"),
-        key("colorspace", Kind::Choice(&["srgb", "linear"]), "colours `\"srgb\"`, all else `\"linear\"`", "Encoding of 8-bit images"),
-        key("channel", Kind::Choice(&["rgb", "r", "g", "b", "a"]), "colours and normal maps `\"rgb\"`, all else `\"r\"`", "What of the image counts; one channel makes a colour grey"),
-        key("strength", Kind::Number(Range::new(0.0, 100.0)), "1", "Of a normal map: factor on its leaning"),
-        key("height", Kind::Number(Range::ANY), "1", "Of a bump map: height of white, scene units"),
-    ],
-};
-
-pub static LOBE: Section = Section {
-    name: "lobes = [{ … }]",
-    noun: "a lobe",
-    keys: &[
-        key("m", Kind::Number(Range::new(1.0e-3, 2.0)), "required", "Rms slope of the lobe"),
-        key("weight", Kind::Number(Range::UNIT), "required", "Its share; the shares add up to 1"),
-    ],
-};
-
 /// The keys that place a thing, the same everywhere: scale, then rotate, then translate.
 const SCALE: Key =
     key("scale", Kind::Special("a number or three numbers [x, y, z], none 0"), "1", "Applied first; negative mirrors");
@@ -281,6 +227,7 @@ pub static OBJECT: Section = Section {
         MATRIX,
         TRANSFORM,
         key("casts_shadow", Kind::Boolean, "the material's", "Whether it stops shadow rays"),
+        key("shading", Kind::Choice(&SHADING_NAMES), "that of `[render]`", "How its triangles are shaded under `local`; a sphere needs `segments` for `flat` and `gouraud`"),
         key("instances", Kind::Special("an array of tables"), "none", "Copies that share the geometry: each placed by its own keys below, after the object's"),
         key("grid", Kind::Special("a table"), "none", "A block of copies; its keys are below"),
         key("radius", Kind::Number(Range::POSITIVE), "1", "Scene units").only(&["sphere", "disk", "cylinder", "cone"]),
@@ -296,6 +243,8 @@ pub static OBJECT: Section = Section {
         key("crease", Kind::Number(Range::new(0.0, 180.0)), "45", "Edges of a polyline or of smooth normals stay sharp above this angle, degrees").only(&["lathe", "mesh"]),
         key("segments", Kind::Integer { min: 1, max: 4096 }, "quad and box 1, teapot 8, heightfield 128, others 64; a sphere without it is analytic", "Around the axis (from 3), along each side, along each side of a teapot's patches (to 128), or cells of a heightfield from noise").only(&["sphere", "quad", "box", "disk", "cylinder", "cone", "torus", "lathe", "teapot", "heightfield"]),
         key("noise", Kind::Special("a table"), "all defaults", "The landscape of a heightfield without `file`; its keys are below").only(&["heightfield"]),
+        key("triangles", Kind::Integer { min: 1, max: u32::MAX as i64 }, "200000", "About how many: of a terrain from 2 and to 33554432, of a hairball to 33554432, of a field of teapots all together to 4227858432").only(&["terrain", "hairball", "teapots"]),
+        key("level", Kind::Integer { min: 0, max: 7 }, "4", "How often spheres carry nine smaller ones: (9^(level + 1) - 1) / 8 analytic spheres").only(&["sphereflake"]),
         key("file", Kind::Text, "required for a mesh", "mesh: OBJ, PLY, glTF or GLB; heightfield: an image, white is high; relative to the scene file").only(&["mesh", "heightfield"]),
         key("normals", Kind::Choice(&["file", "flat", "smooth"]), "`\"file\"`", "The file's own normals, none, or the mean of the faces around each vertex").only(&["mesh"]),
     ],
@@ -312,8 +261,23 @@ pub static NOISE: Section = Section {
     ],
 };
 
-pub const SHAPES: &[&str] =
-    &["sphere", "quad", "box", "disk", "cylinder", "cone", "torus", "lathe", "teapot", "heightfield", "mesh"];
+pub const SHAPES: &[&str] = &[
+    "sphere",
+    "quad",
+    "box",
+    "disk",
+    "cylinder",
+    "cone",
+    "torus",
+    "lathe",
+    "teapot",
+    "heightfield",
+    "terrain",
+    "hairball",
+    "sphereflake",
+    "teapots",
+    "mesh",
+];
 
 pub static STEP: Section =
     Section { name: "transform = [{ … }]", noun: "a transform step", keys: &[SCALE, ROTATE, TRANSLATE, MATRIX] };

@@ -152,7 +152,6 @@ impl Key {
 /// Words of other programs for keys of ours, for "did you mean".
 pub const SYNONYMS: &[(&str, &str)] = &[
     ("albedo", "color"),
-    ("alpha", "m"),
     ("ambient_weight", "k_a"),
     ("angle", "outer_angle"),
     ("base_color", "color"),
@@ -185,7 +184,6 @@ pub const SYNONYMS: &[(&str, &str)] = &[
     ("reflectance", "color"),
     ("reflection", "k_r"),
     ("resolution", "size"),
-    ("roughness", "m"),
     ("shininess", "exponent"),
     ("specular", "k_s"),
     ("spp", "samples"),

@@ -9,6 +9,7 @@ mod format;
 mod keys;
 mod light;
 mod material;
+mod material_format;
 mod metal;
 mod names;
 mod object;
@@ -17,11 +18,13 @@ mod place;
 mod reader;
 mod settings;
 mod shapes;
+mod table;
 mod texture;
 
 pub(super) use keys::LARGEST;
-pub(super) use reader::nearest;
+pub use metal::{METALS, Metal};
 pub use overrides::Override;
+pub use reader::nearest;
 
 use super::staging::bare_scene;
 use crate::scene::{IntensityUnit, Rgb, Scene, SceneError};
@@ -45,8 +48,9 @@ pub fn scene_from_text(file: &Path, text: String, overrides: &[Override]) -> Res
     scene.ambient = lights.ambient;
     let mut textures = texture::Textures::default();
     scene.background = read_background(&root, &mut textures)?;
-    let (materials, names) = material::read_materials(&root, &mut textures, &mut scene.warnings)?;
-    (scene.materials, scene.textures) = (materials, textures.list);
+    let mut tables = table::Tables::default();
+    let (materials, names) = material::read_materials(&root, &mut textures, &mut tables, &mut scene.warnings)?;
+    (scene.materials, scene.textures, scene.tables) = (materials, textures.list, tables.list);
     object::read_objects(&root, &names, &mut scene)?;
     scene.lights = light::read_lights(&root, &lights, &mut scene.warnings)?;
     warn_dark(&mut scene);

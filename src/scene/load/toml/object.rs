@@ -4,11 +4,13 @@ use super::format::OBJECT;
 use super::names::Names;
 use super::place::{check, read_copies, read_place};
 use super::reader::{Reader, Result};
-use super::shapes::{SHAPE_KINDS, ShapeKind, crease, tessellate};
+use super::settings::SHADINGS;
+use super::shapes::{SHAPE_KINDS, ShapeKind, crease, tessellate, triangles};
 use super::texture::{beside, refer};
+use crate::scene::load::builtin::{Builtin, DEFAULT_LEVEL, TEAPOT_STEPS, teapot_count};
 use crate::scene::load::load_file;
-use crate::scene::shape::compute_smooth_normals;
-use crate::scene::{Geometry, Material, MaterialId, Mesh, MeshId, Model, Object, Scene, Transform};
+use crate::scene::shape::{self, compute_smooth_normals};
+use crate::scene::{Geometry, Material, MaterialId, Mesh, MeshId, Model, Object, Scene, Shading, Transform};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -34,6 +36,11 @@ struct Piece {
     geometry: Geometry,
     transform: Transform,
     material: Option<MaterialId>,
+}
+
+/// One geometry in many places.
+fn many(geometry: Geometry, places: Vec<Transform>) -> Vec<Piece> {
+    places.into_iter().map(|transform| Piece { name: String::new(), geometry, transform, material: None }).collect()
 }
 
 /// How normals of a file are treated.
@@ -66,9 +73,22 @@ impl Objects<'_> {
         let material = self.read_material(table)?;
         let place = read_place(table)?;
         let casts_shadow = table.boolean("casts_shadow")?;
+        let shading = table.choice("shading", &SHADINGS)?;
         let pieces = match (kind, tessellate(table, kind)?) {
             (ShapeKind::Mesh, _) => self.read_file(table)?,
+            (ShapeKind::Sphereflake, _) => {
+                let level = table.integer("level")?.unwrap_or(DEFAULT_LEVEL as u32);
+                many(Geometry::Sphere, shape::sphereflake(level))
+            }
+            (ShapeKind::Teapots, _) => {
+                let field = shape::teapot_field(teapot_count(triangles(table, Builtin::Teapots)?));
+                many(self.add_mesh(shape::teapot(TEAPOT_STEPS)).geometry, field)
+            }
             (_, Some(mesh)) => vec![self.add_mesh(mesh)],
+            (_, None) if shading.unwrap_or(self.scene.settings.shading) != Shading::Phong => {
+                let message = "a sphere without \"segments\" has no triangles to shade flat or by Gouraud's method";
+                return Err(table.bad("shading", message));
+            }
             (_, None) => {
                 let radius = table.number("radius")?.unwrap_or(1.0);
                 let transform = Transform(glam::DAffine3::from_scale(DVec3::splat(radius)));
@@ -89,7 +109,14 @@ impl Objects<'_> {
                 let transform = check(table, piece.transform.then(place).then(copy.transform))?;
                 let material = own.or(material).or(piece.material);
                 let material = material.or_else(|| self.needs_material(piece.geometry).then(|| self.grey()));
-                self.scene.objects.push(Object { name, geometry: piece.geometry, transform, material, casts_shadow });
+                self.scene.objects.push(Object {
+                    name,
+                    geometry: piece.geometry,
+                    transform,
+                    material,
+                    casts_shadow,
+                    shading,
+                });
             }
         }
         Ok(())

@@ -1,13 +1,14 @@
 //! `[render]`, `[film]`, `[camera]` and `[background]`: read on top of what a scene already has.
 
 use super::document::Value;
-use super::format::{BACKGROUND, CAMERA, FILM, FILTER, RENDER};
+use super::format::{BACKGROUND, CAMERA, FILM, FILTER, FILTER_NAMES, RENDER};
 use super::keys::Range;
 use super::place::read_rotation;
 use super::reader::{Reader, Result, in_range};
 use super::texture::Textures;
 use crate::scene::{
-    Background, Camera, Environment, Film, Filter, Integrator, IntensityUnit, Projection, RenderSettings, Sampler, ToneMap,
+    Background, Camera, Environment, Film, Filter, Integrator, IntensityUnit, Projection, RenderSettings, Sampler,
+    Shading, ToneMap,
 };
 use glam::Vec3;
 
@@ -17,6 +18,10 @@ pub struct LightSettings {
     pub unit: IntensityUnit,
     pub ambient: Vec3,
 }
+
+/// Words of `shading`.
+pub const SHADINGS: [(&str, Shading); 3] =
+    [("flat", Shading::Flat), ("gouraud", Shading::Gouraud), ("phong", Shading::Phong)];
 
 /// Overwrites what `[render]` writes.
 pub fn read_render(root: &Reader, settings: &mut RenderSettings, light: &mut LightSettings) -> Result<()> {
@@ -41,15 +46,25 @@ pub fn read_render(root: &Reader, settings: &mut RenderSettings, light: &mut Lig
         settings.clamp = (clamp > 0.0).then_some(clamp);
     }
     set(&mut settings.shadows, table.boolean("shadows")?);
+    set(&mut settings.shading, table.choice("shading", &SHADINGS)?);
     set(&mut light.unit, table.choice("intensity", &units)?);
     set(&mut light.ambient, table.color("ambient")?);
     Ok(())
 }
 
+/// Of displays.
+const GAMMA: Range = Range::new(0.1, 10.0);
+
 /// Overwrites what `[film]` writes.
 pub fn read_film(root: &Reader, film: &mut Film) -> Result<()> {
     let Some(table) = root.table("film", &FILM)? else { return Ok(()) };
-    let tonemaps = [("clamp", ToneMap::Clamp), ("normalise", ToneMap::Normalise), ("reinhard", ToneMap::Reinhard)];
+    let tonemaps = [
+        ("clamp", ToneMap::Clamp),
+        ("normalise", ToneMap::Normalise),
+        ("reinhard", ToneMap::Reinhard),
+        ("aces", ToneMap::Aces),
+        ("agx", ToneMap::Agx),
+    ];
     if let Some(size) = table.numbers::<2>("size", Range::new(1.0, 65_535.0))? {
         if size.iter().any(|number| number.fract() != 0.0) {
             return Err(table.bad("size", "\"size\" must be two integers [width, height]"));
@@ -63,6 +78,11 @@ pub fn read_film(root: &Reader, film: &mut Film) -> Result<()> {
     }
     set(&mut film.tonemap, table.choice("tonemap", &tonemaps)?);
     set(&mut film.exposure, table.float("exposure")?);
+    if let Some(node) = table.node("gamma") {
+        let srgb = matches!(&node.value, Value::String(text) if text == "srgb").then_some(None);
+        let power = || in_range(node, GAMMA).map(|gamma| Some(gamma as f32));
+        film.gamma = srgb.or_else(power).ok_or_else(|| table.mismatch("gamma", node))?;
+    }
     Ok(())
 }
 
@@ -74,7 +94,7 @@ fn power_of_two(number: f64) -> Option<i32> {
 
 fn read_filter(film: &Reader) -> Result<Option<Filter>> {
     let Some(node) = film.node("filter") else { return Ok(None) };
-    let shapes = [("box", "box"), ("tent", "tent"), ("gaussian", "gaussian"), ("mitchell", "mitchell")];
+    let shapes = FILTER_NAMES.map(|name| (name, name));
     let (shape, table) = match &node.value {
         Value::String(text) if shapes.iter().any(|(name, _)| name == text) => (text.as_str(), None),
         Value::Table(_) => {
@@ -93,6 +113,9 @@ fn read_filter(film: &Reader) -> Result<Option<Filter>> {
         "mitchell" => {
             Filter::Mitchell { radius: number("radius", 2.0)?, b: number("b", third)?, c: number("c", third)? }
         }
+        "catmull-rom" => Filter::Mitchell { radius: number("radius", 2.0)?, b: 0.0, c: 0.5 },
+        "blackman-harris" => Filter::BlackmanHarris { radius: number("radius", 2.0)? },
+        "lanczos" => Filter::Lanczos { radius: number("radius", 3.0)? },
         _ => Filter::Box { radius: number("radius", 0.5)? },
     }))
 }
@@ -170,7 +193,8 @@ fn check_view(table: &Reader, camera: &Camera) -> Result<()> {
 /// What `[background]` writes; what a gradient leaves out is black.
 pub fn read_background(root: &Reader, textures: &mut Textures) -> Result<Background> {
     let Some(table) = root.table("background", &BACKGROUND)? else { return Ok(Background::BLACK) };
-    for (key, other) in [("color", "bottom"), ("color", "top"), ("image", "color"), ("image", "bottom"), ("image", "top")]
+    for (key, other) in
+        [("color", "bottom"), ("color", "top"), ("image", "color"), ("image", "bottom"), ("image", "top")]
     {
         table.exclusive(key, other)?;
     }

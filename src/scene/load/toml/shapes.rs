@@ -5,6 +5,7 @@ use super::format::NOISE;
 use super::keys::Range;
 use super::reader::{Reader, Result, in_range, numbers};
 use super::texture::{beside, refer};
+use crate::scene::load::builtin::{Builtin, DEFAULT_TRIANGLES};
 use crate::scene::load::image::{ColorSpace, load_texture};
 use crate::scene::shape::{self, HeightGrid, Profile, ProfileKind};
 use crate::scene::{Mesh, SceneError};
@@ -22,6 +23,10 @@ pub enum ShapeKind {
     Lathe,
     Teapot,
     HeightField,
+    Terrain,
+    Hairball,
+    Sphereflake,
+    Teapots,
     Mesh,
 }
 
@@ -36,17 +41,22 @@ pub const SHAPE_KINDS: &[(&str, ShapeKind)] = &[
     ("lathe", ShapeKind::Lathe),
     ("teapot", ShapeKind::Teapot),
     ("heightfield", ShapeKind::HeightField),
+    ("terrain", ShapeKind::Terrain),
+    ("hairball", ShapeKind::Hairball),
+    ("sphereflake", ShapeKind::Sphereflake),
+    ("teapots", ShapeKind::Teapots),
     ("mesh", ShapeKind::Mesh),
 ];
 
-/// The triangles of the shape `kind`; None for a file and for a sphere without `segments`, which is analytic.
+/// The triangles of the shape `kind`; None for what is no single mesh: a file, a sphere without `segments` (which is
+/// analytic), and many spheres or teapots.
 pub fn tessellate(table: &Reader, kind: ShapeKind) -> Result<Option<Mesh>> {
     let number = |key: &str, default: f64| -> Result<f64> { Ok(table.number(key)?.unwrap_or(default)) };
     let around = || segments(table, 64, shape::SEGMENTS_MIN, shape::SEGMENTS_MAX);
     let along = || segments(table, 1, 1, shape::SEGMENTS_MAX);
     let capped = || -> Result<bool> { Ok(table.boolean("capped")?.unwrap_or(true)) };
     let mesh = match kind {
-        ShapeKind::Mesh => return Ok(None),
+        ShapeKind::Mesh | ShapeKind::Sphereflake | ShapeKind::Teapots => return Ok(None),
         ShapeKind::Sphere if !table.has("segments") => return Ok(None),
         ShapeKind::Sphere => shape::sphere_mesh(number("radius", 1.0)?, around()?),
         ShapeKind::Quad => shape::quad(size::<2>(table)?, along()?),
@@ -68,6 +78,8 @@ pub fn tessellate(table: &Reader, kind: ShapeKind) -> Result<Option<Mesh>> {
         }
         ShapeKind::Teapot => shape::teapot(segments(table, 8, 1, 128)?),
         ShapeKind::HeightField => read_height_field(table)?,
+        ShapeKind::Terrain => shape::terrain(triangles(table, Builtin::Terrain)?),
+        ShapeKind::Hairball => shape::hairball(triangles(table, Builtin::Hairball)?),
     };
     Ok(Some(mesh))
 }
@@ -79,6 +91,18 @@ fn segments(table: &Reader, default: u32, min: u32, max: u32) -> Result<u32> {
         return Err(table.bad("segments", message));
     }
     Ok(segments)
+}
+
+/// `triangles` of a shape that has any number of them.
+pub fn triangles(table: &Reader, kind: Builtin) -> Result<u64> {
+    let triangles = table.integer("triangles")?.map_or(DEFAULT_TRIANGLES, u64::from);
+    let (least, most) = kind.sizes();
+    if !(least..=most).contains(&triangles) {
+        let message =
+            format!("\"triangles\" of this shape must be an integer from {least} to {most}, found {triangles}");
+        return Err(table.bad("triangles", message));
+    }
+    Ok(triangles)
 }
 
 fn size<const N: usize>(table: &Reader) -> Result<[f64; N]> {

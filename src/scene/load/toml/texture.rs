@@ -1,7 +1,7 @@
 //! The textures of a material: a file or a pattern, how it is laid on, and what it varies.
 
 use super::document::{Document, Node, Value};
-use super::format::TEXTURE;
+use super::material_format::TEXTURE;
 use super::keys::Range;
 use super::reader::{Reader, Result};
 use crate::scene::load::image::ColorSpace;
@@ -125,13 +125,10 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
 }
 
 fn read_channel(table: &Reader, parameter: Parameter) -> Result<Option<Channel>> {
-    let words =
-        [("rgb", Channel::Rgb), ("r", Channel::R), ("g", Channel::G), ("b", Channel::B), ("a", Channel::A)];
+    let words = [("rgb", Channel::Rgb), ("r", Channel::R), ("g", Channel::G), ("b", Channel::B), ("a", Channel::A)];
     match table.choice("channel", &words)? {
         None | Some(Channel::Rgb) => Ok(None),
-        Some(_) if parameter == Parameter::Normal => {
-            Err(table.bad("channel", "a normal map needs all three channels"))
-        }
+        Some(_) if parameter == Parameter::Normal => Err(table.bad("channel", "a normal map needs all three channels")),
         channel => Ok(channel),
     }
 }

@@ -1,0 +1,66 @@
+//! Whole samples: everything from the camera ray to the film.
+
+use super::report::{ImageReport, RunsOn};
+use super::run::{Plan, take_turns};
+use super::tracer::Timing;
+use crate::film::{Film, Rect};
+use crate::render::{Counters, Job, RenderError, Renderer, Watch};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Measures one sample a pixel of `film`'s frame on all renderers and compares the films with the first one's.
+/// `integrator`: which one the renderers were made for.
+pub fn measure(
+    integrator: &str,
+    film: &Film,
+    renderers: &mut [(String, Box<dyn Renderer + '_>)],
+    plan: Plan,
+) -> Result<ImageReport, RenderError> {
+    let mut films = vec![film.clone(); renderers.len()];
+    let times = take_turns(plan, renderers.len(), |at| {
+        films[at] = film.clone();
+        render(renderers[at].1.as_mut(), &mut films[at])
+    })?;
+    let mut results = Vec::new();
+    for (((on, _), (wall_s, device_s)), other) in renderers.iter().zip(times).zip(&films) {
+        let differs = |(a, b): (&[i64; 4], &[i64; 4])| a != b;
+        let differ = films[0].sums().iter().zip(other.sums()).filter(|&pair| differs(pair)).count() as u64;
+        let first = films[0].sums().iter().zip(other.sums()).position(differs);
+        let width = film.crop().width as usize;
+        let first = first.map(|at| format!("pixel {},{}", at % width, at / width));
+        results.push(RunsOn { on: on.clone(), wall_s, device_s, differ, first, dispatch: None });
+    }
+    let film_hash = films.first().map_or_else(String::new, |film| film.hash().to_string());
+    Ok(ImageReport { integrator: integrator.to_owned(), samples: film.crop().area() as u64, film_hash, results })
+}
+
+fn render(renderer: &mut dyn Renderer, film: &mut Film) -> Result<Timing, RenderError> {
+    let job = Job { crop: film.crop(), samples: 0..1 };
+    let abort = AtomicBool::new(false);
+    let watch = Watch { abort: &abort, advance: &|_| {} };
+    let start = Instant::now();
+    let Counters { extend_s, shade_s, shadow_s, other_s, .. } = renderer.accumulate(&job, film, &watch)?;
+    let device = extend_s + shade_s + shadow_s + other_s;
+    Ok(Timing { wall: start.elapsed().as_secs_f64(), device: (device > 0.0).then_some(device) })
+}
+
+/// The frame nearest to `width` x `height` in shape that has about `rays` pixels.
+pub fn frame_of(width: u32, height: u32, rays: u32) -> Rect {
+    let aspect = f64::from(width) / f64::from(height);
+    let side = |length: f64| (length.round() as u32).clamp(1, 65_535);
+    let columns = side(libm::sqrt(f64::from(rays) * aspect));
+    Rect::whole(columns, side(f64::from(rays) / f64::from(columns)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_frame_has_the_scene_s_shape_and_about_as_many_pixels_as_rays() {
+        assert_eq!(frame_of(640, 640, 1 << 20), Rect::whole(1024, 1024));
+        let frame = frame_of(1280, 720, 1_000_000);
+        assert_eq!((frame.width, frame.height), (1333, 750));
+        assert_eq!(frame_of(65_535, 1, 4), Rect::whole(512, 1));
+    }
+}

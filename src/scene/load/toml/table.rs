@@ -1,0 +1,28 @@
+//! Measured tables that materials name.
+
+use super::reader::{Reader, Result};
+use super::texture::{beside, refer};
+use crate::scene::load::merl::read_merl;
+use crate::scene::{Table, TableId};
+use std::path::PathBuf;
+
+/// The scene's tables; a file is read once however many materials show it.
+#[derive(Debug, Default)]
+pub struct Tables {
+    pub list: Vec<Table>,
+    files: Vec<PathBuf>,
+}
+
+impl Tables {
+    /// The table that `file` of a material names.
+    pub fn read(&mut self, table: &Reader) -> Result<TableId> {
+        let file = beside(table.document, table.required("file", table.text("file")?)?);
+        if let Some(index) = self.files.iter().position(|known| *known == file) {
+            return Ok(TableId(index as u32));
+        }
+        let values = read_merl(&file).map_err(|error| refer(table, "file", error))?;
+        self.list.push(Table::Merl { values });
+        self.files.push(file);
+        Ok(TableId(self.list.len() as u32 - 1))
+    }
+}
