@@ -344,7 +344,10 @@ fn shapes_that_have_no_surface_are_refused() {
             "shape = \"mesh\"\nfile = \"a.toml\"",
             "a.toml:5:8: \"file\" of a mesh must be OBJ, PLY, glTF or GLB, found a TOML scene",
         ),
-        ("shape = \"mesh\"\nfile = \"a.stl\"", "a.stl: scene files are .toml, .obj, .gltf, .glb, .ply or .xml, found .stl"),
+        (
+            "shape = \"mesh\"\nfile = \"a.stl\"",
+            "a.stl: scene files are .toml, .obj, .gltf, .glb, .ply or .xml, found .stl",
+        ),
     ];
     for (text, expected) in cases {
         refuses("a.toml", &format!("[camera]\neye = [0, 0, 5]\n[[object]]\n{text}\n"), expected);

@@ -2,7 +2,8 @@
 
 use super::DIMENSION_LEAF;
 use crate::layout::{
-    Hit, MAX_LEAVES, MODEL_BLEND, Material, PARAMETER_BUMP, PARAMETER_NORMAL, SceneView, TEXTURES_MOST, load_material, load_texture,
+    Hit, MAX_LEAVES, MODEL_BLEND, Material, PARAMETER_BUMP, PARAMETER_NORMAL, SceneView, TEXTURES_MOST, load_material,
+    load_texture,
 };
 use crate::shading::coordinate::texture_uv;
 use crate::shading::footprint::{cone_footprint, mapped_normal, raised_normal, texture_gradients};

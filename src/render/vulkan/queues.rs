@@ -9,7 +9,8 @@ use super::record::Recorder;
 use super::scene::SceneBuffers;
 use crate::bake::SceneData;
 use crate::layout::{
-    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, INTEGRATOR_PATH, KIND_SPHERE, MODEL_EMISSIVE,
+    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, INTEGRATOR_PATH, KIND_SPHERE,
+    MODEL_EMISSIVE,
 };
 use crate::shaders;
 use glam::Vec3;

@@ -1,8 +1,8 @@
 //! `[[material]]`.
 
 use super::document::Value;
-use super::material_format::{LOBE, MATERIAL};
 use super::keys::Range;
+use super::material_format::{LOBE, MATERIAL};
 use super::metal::{METALS, normal_reflectance};
 use super::names::Names;
 use super::reader::{Reader, Result, in_range};

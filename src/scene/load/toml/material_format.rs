@@ -206,4 +206,3 @@ pub static LOBE: Section = Section {
         key("weight", Kind::Number(Range::UNIT), "required", "Its share; the shares add up to 1"),
     ],
 };
-

@@ -1,8 +1,8 @@
 //! The textures of a material: a file or a pattern, how it is laid on, and what it varies.
 
 use super::document::{Document, Node, Value};
-use super::material_format::TEXTURE;
 use super::keys::Range;
+use super::material_format::TEXTURE;
 use super::reader::{Reader, Result};
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::{TextureFiles, intern};
