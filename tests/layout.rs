@@ -315,7 +315,7 @@ fn the_bindings_file_binds_all_that_is_promised() {
 }
 
 /// The bytes before the records in the layout kernel's input: a header.
-const HEADER_BYTES: usize = 288;
+const HEADER_BYTES: usize = size_of::<gonio::layout::SceneHeader>();
 
 /// Runs the layout kernel on `count` records, or for its constants if `record` is the number of records.
 fn run_layout_kernel(context: &mut Context, record: usize, count: usize, input: &[u8], output: usize) -> Vec<u8> {

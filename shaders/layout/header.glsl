@@ -18,7 +18,7 @@ const uint FILTER_TENT = 1u;
 // Gaussian, Mitchell and other tabulated filters: piecewise constant, sampled through their inverse CDF.
 const uint FILTER_TABLE = 2u;
 
-// Scene-wide values. 288 bytes. `first_*` are offsets into the data heap in 16-byte words.
+// Scene-wide values. 272 bytes. `first_*` are offsets into the data heap in 16-byte words.
 struct SceneHeader {
     Camera camera;
     // I_a of the ambient term (radiance).

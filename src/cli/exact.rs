@@ -2,22 +2,24 @@
 
 use crate::render::RenderError;
 use crate::render::vulkan::Context;
-use crate::verify::probe::{Cache, Exactness, key, probe};
-use crate::verify::twins::FAMILIES;
+use crate::verify::probe::{Cache, Exactness, key, probe_families};
+use crate::verify::twins::{FAMILIES, basic_families};
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
-/// Proves the device exact or finds the kept answer. An inexact one is an error where `required`, else one warning a
-/// process; where the probe itself fails it is the same.
+/// Proves the device exact or finds the kept answer: in every function where `required`, else in those that every picture
+/// needs. An inexact device is an error where `required`, else one warning a process; where the probe itself fails it is
+/// the same.
 pub fn check(context: &mut Context, required: bool) -> Result<(), RenderError> {
     /// Devices (by the probe's key) that were found exact, or warned of.
     static SETTLED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
-    let key = key(context.info(), FAMILIES);
+    let families = if required { FAMILIES } else { basic_families() };
+    let key = key(context.info(), families);
     let is_settled = |key: &String| SETTLED.lock().unwrap_or_else(PoisonError::into_inner).contains(key);
     if is_settled(&key) {
         return Ok(());
     }
-    let problem = match probe(context, &Cache::user()) {
+    let problem = match probe_families(context, families, &Cache::user()) {
         Ok(probed) => match probed.exactness {
             Exactness::Exact => None,
             Exactness::Inexact(mismatch) => {

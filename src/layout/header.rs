@@ -19,7 +19,7 @@ pub const FILTER_TENT: u32 = 1;
 /// Gaussian, Mitchell and other tabulated filters: piecewise constant, sampled through their inverse CDF.
 pub const FILTER_TABLE: u32 = 2;
 
-/// Scene-wide values. 288 bytes. `first_*` are offsets into the data heap in 16-byte words.
+/// Scene-wide values. 272 bytes. `first_*` are offsets into the data heap in 16-byte words.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SceneHeader {

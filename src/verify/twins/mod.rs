@@ -32,17 +32,22 @@ pub struct Family {
     pub twins: &'static [Twin],
 }
 
-/// All of them.
+/// All of them, those that every picture needs first.
 pub static FAMILIES: &[Family] = &[
     math::FAMILY,
     film::FAMILY,
     shading::FAMILY,
-    models::FAMILY,
     warp::FAMILY,
     trace::FAMILY,
+    models::FAMILY,
     path::FAMILY,
     texture::FAMILY,
 ];
+
+/// What every picture needs. Drivers compile the kernels of the others for longer than many pictures take.
+pub fn basic_families() -> &'static [Family] {
+    &FAMILIES[..5]
+}
 
 /// The arguments of one evaluation, read as the harness in GLSL reads them.
 pub struct In<'a>(&'a [u32]);
