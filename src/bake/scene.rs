@@ -29,8 +29,7 @@ const FILM_BITS: i32 = 22;
 /// Bakes a scene whose indices are valid (`scene::load` guarantees it).
 pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     let start = Instant::now();
-    let mut data = SceneData::default();
-    data.header = header(scene)?;
+    let mut data = SceneData { header: header(scene)?, ..SceneData::default() };
     bake_tables(&scene.film.filter, &mut data);
     bake_textures(&scene.textures, &mut data);
     check_count("words of texels", data.texels.len())?;

@@ -239,8 +239,9 @@ pub fn widen(bvh: &Bvh2, most: u32) -> (Vec<TreeNode>, Vec<u32>) {
             primitive_base: node.primitive_base + order,
             ..*node
         };
-        whole.nodes[number as usize] = moved(&part.nodes[0]);
-        whole.nodes.extend(part.nodes[1..].iter().map(moved));
+        let mut moved = part.nodes.iter().map(moved);
+        whole.nodes[number as usize] = moved.next().expect("a part has a root");
+        whole.nodes.extend(moved);
         whole.order.extend(part.order);
     }
     (whole.nodes, whole.order)

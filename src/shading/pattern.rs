@@ -90,7 +90,7 @@ pub fn fractal_noise(uv: Vec2, octaves: u32, gain: f32, seed: u32, width: f32) -
         }
         total += strength;
         strength *= gain;
-        place = place * 2.0;
+        place *= 2.0;
         covered_width *= 2.0;
     }
     div(sum, total)

@@ -183,7 +183,7 @@ pub fn pdf_principled(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3
     let alpha = principled_alpha(scene, material);
     let choice = principled_choice(scene, material, wo);
     let mut facets = pdf_facet(DISTRIBUTION_TROWBRIDGE_REITZ, alpha.x, alpha.y, view, facing);
-    facets = facets * ((1.0 - choice.x) - choice.y);
+    facets *= (1.0 - choice.x) - choice.y;
     let reflection = principled_reflection(scene, material, fresnel_dielectric(min_(o_h.abs(), 1.0), eta), outside);
     if wo.z * wi.z <= 0.0 {
         return ((1.0 - reflection) * facets) * refraction_jacobian(o_h, dot3(wi, wm), eta);

@@ -150,7 +150,7 @@ pub fn filter_texture(scene: &SceneView, texture: &Texture, uv: Vec2, detail: De
             } else {
                 read_image(scene, &level, place)
             };
-            sum = sum + texel;
+            sum += texel;
         }
         let mean = if detail.probes == 1 { sum } else { sum * rcp(detail.probes as f32) };
         result = if offset == 0 { mean } else { result + (mean - result) * blend };

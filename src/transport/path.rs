@@ -57,6 +57,7 @@ pub fn shade_escape(scene: &SceneView, path: &PathState, key: SampleKey, queues:
 }
 
 /// Light of one emitter, chosen at random, that the surface sends on towards `wo`; its shadow ray is appended.
+#[allow(clippy::too_many_arguments, reason = "to read like its twin")]
 fn shade_emitter(
     scene: &SceneView,
     path: &PathState,
@@ -102,6 +103,7 @@ fn shade_emitter(
 }
 
 /// Lets the path go on into a direction of the surface.
+#[allow(clippy::too_many_arguments, reason = "to read like its twin")]
 fn scatter(
     scene: &SceneView,
     path: &PathState,

@@ -308,7 +308,7 @@ pub fn tables() -> Vec<(&'static str, String)> {
             tables.push((plugin.class, "| type | properties and their defaults | holds |\n|---|---|---|\n".to_owned()));
         }
         let (read, unread): (Vec<_>, Vec<_>) = plugin.properties().partition(|property| property.default != NO_EFFECT);
-        let mut cells: Vec<String> = read.iter().map(|property| describe(property)).collect();
+        let mut cells: Vec<String> = read.iter().map(describe).collect();
         if !unread.is_empty() {
             let names: Vec<String> = unread.iter().map(|property| format!("`{}`", property.name)).collect();
             cells.push(format!("without effect: {}", names.join(", ")));
