@@ -52,8 +52,7 @@ fn hits(scene: &Scene) -> Vec<(Bounce, f32)> {
     let (data, image) = picture(scene);
     let mut renderer = CpuRenderer::new(&data, None).unwrap();
     let pixels = (0..image.height).flat_map(|y| (0..image.width).map(move |x| (x, y)));
-    let seen =
-        pixels.zip(&image.pixels).map(|((x, y), pixel)| (renderer.inspect(x, y, 0).unwrap()[0], pixel[0]));
+    let seen = pixels.zip(&image.pixels).map(|((x, y), pixel)| (renderer.inspect(x, y, 0).unwrap()[0], pixel[0]));
     seen.filter(|(bounce, _)| bounce.hit.instance != INVALID).collect()
 }
 
