@@ -35,7 +35,8 @@ fn every_scene_with_a_reference_loads_but_those_with_media() {
 
 #[test]
 fn metals_are_the_means_of_mitsubas_tables() {
-    let Some(assets) = assets() else { return };
+    // The scene lies elsewhere, so a relative path would not lead there.
+    let Some(assets) = assets().map(|folder| folder.canonicalize().expect("it is there")) else { return };
     for name in ["Ag", "Al", "Au", "Cr", "Cu"] {
         let part = |part: &str| {
             let file = assets.join(format!("spectra/mitsuba-ior/{name}.{part}.spd"));
