@@ -7,19 +7,21 @@ use crate::verify::twins::{FAMILIES, basic_families};
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
-/// Proves the device exact or finds the kept answer: in every function where `required`, else in those that every picture
-/// needs. An inexact device is an error where `required`, else one warning a process; where the probe itself fails it is
+/// Proves the device exact or finds the kept answer: in every function where `required` or once that has been proved, else
+/// in those that every picture needs. An inexact device is an error where `required`, else one warning a process; where the probe itself fails it is
 /// the same.
 pub fn check(context: &mut Context, required: bool) -> Result<(), RenderError> {
     /// Devices (by the probe's key) that were found exact, or warned of.
     static SETTLED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
-    let families = if required { FAMILIES } else { basic_families() };
+    let cache = Cache::user();
+    let whole = required || cache.has(context.info(), FAMILIES);
+    let families = if whole { FAMILIES } else { basic_families() };
     let key = key(context.info(), families);
     let is_settled = |key: &String| SETTLED.lock().unwrap_or_else(PoisonError::into_inner).contains(key);
     if is_settled(&key) {
         return Ok(());
     }
-    let problem = match probe_families(context, families, &Cache::user()) {
+    let problem = match probe_families(context, families, &cache) {
         Ok(probed) => match probed.exactness {
             Exactness::Exact => None,
             Exactness::Inexact(mismatch) => {

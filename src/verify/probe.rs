@@ -71,6 +71,11 @@ impl Cache {
         self.folder.as_ref().map(|folder| folder.join(format!("{key}.json")))
     }
 
+    /// Whether the answer for these families on this device is kept.
+    pub fn has(&self, info: &DeviceInfo, families: &[Family]) -> bool {
+        self.load(&key(info, families), families).is_some()
+    }
+
     /// The answer kept for `key`; `None` for anything else that may lie there.
     fn load(&self, key: &str, families: &[Family]) -> Option<Exactness> {
         let mut text = String::new();
