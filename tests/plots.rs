@@ -216,7 +216,7 @@ fn a_scenes_comment_is_its_caption() {
 #[test]
 fn the_page_needs_nothing_else_and_escapes_what_it_shows() {
     let entry = Entry {
-        name: "a".into(),
+        name: "02-phong".into(),
         row: Some(2),
         caption: "x < y & z".into(),
         formula: Some("I = 1"),
@@ -226,6 +226,7 @@ fn the_page_needs_nothing_else_and_escapes_what_it_shows() {
     };
     let page = page("T", &[entry]);
     assert!(page.contains("x &lt; y &amp; z") && page.contains("# &lt;b&gt;") && page.contains("base64,AQID"));
+    assert!(page.contains("<h2>2 · phong</h2>") && page.contains("id=\"02-phong\""), "{page}");
     let outside = ["http:", "https:", "src=\"/", "<link", "<script", "@import", "url("];
     assert!(outside.iter().all(|word| !page.contains(word)), "{page}");
 }

@@ -25,6 +25,7 @@ h1{font-size:1.6rem;line-height:1.2}h2{font-size:1.2rem;margin:0 0 .3rem}\
 section{border-top:1px solid #ccc;padding:1.2rem 0}\
 nav{line-height:2}nav a{margin-right:.8rem;white-space:nowrap}a{color:#0b57a4}\
 img,svg{display:block;max-width:100%;height:auto;margin:.6rem 0}\
+.plot{overflow-x:auto}.plot svg{min-width:36rem}\
 .formula{font-style:italic;background:#f4f4f4;padding:.5rem .7rem;overflow-wrap:anywhere}\
 pre{overflow-x:auto;background:#f4f4f4;padding:.7rem;font-size:.85rem}summary{cursor:pointer}";
 
@@ -33,9 +34,13 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
+/// The row and the name; a number that the file's name begins with is that row's.
 fn heading(entry: &Entry) -> String {
     match entry.row {
-        Some(row) => format!("{row} · {}", escaped(&entry.name)),
+        Some(row) => {
+            let name = entry.name.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start_matches('-');
+            format!("{row} · {}", escaped(name))
+        }
         None => escaped(&entry.name),
     }
 }
@@ -68,7 +73,10 @@ fn section(entry: &Entry) -> String {
     }
     let picture = STANDARD.encode(&entry.picture);
     html.push_str(&format!("<img alt=\"{name}\" src=\"data:image/png;base64,{picture}\">\n"));
-    html.push_str(entry.plot.as_deref().unwrap_or_default());
+    if let Some(plot) = &entry.plot {
+        // A narrow screen scrolls it: smaller, its words could not be read.
+        html.push_str(&format!("<div class=\"plot\">{plot}</div>\n"));
+    }
     html.push_str(&format!(
         "<details>\n<summary>{name}.toml</summary>\n<pre>{}</pre>\n</details>\n</section>\n",
         escaped(&entry.text)
