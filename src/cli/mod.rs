@@ -5,6 +5,7 @@ pub mod compare;
 pub mod devices;
 mod exact;
 mod gallery;
+mod growth;
 mod interrupt;
 pub mod merge;
 mod output;
@@ -13,6 +14,7 @@ pub mod plot;
 mod progress;
 pub mod render;
 mod setup;
+mod team;
 pub mod verify;
 
 use anyhow::Context;

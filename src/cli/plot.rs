@@ -1,6 +1,7 @@
 //! `gonio plot`: pictures of models.
 
 use super::Usage;
+use super::growth::GrowthArgs;
 use super::setup::Size;
 use crate::film::OutputFile;
 use crate::plot::curves::{self, FACETS, Facets, Interface, InterfaceKind};
@@ -89,6 +90,8 @@ enum What {
         #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true, value_parser = stops)]
         exposure: f64,
     },
+    /// Time a ray against the number of triangles, as `gonio bench` measured it.
+    Growth(GrowthArgs),
 }
 
 /// Which materials.
@@ -224,6 +227,7 @@ impl What {
             Self::Light { .. } => "light",
             Self::Edge => "edge",
             Self::Tone { .. } => "tone",
+            Self::Growth(_) => "growth",
         }
     }
 
@@ -242,6 +246,7 @@ impl What {
             Self::Light { p, delta } => curves::spot_figure(p, *delta),
             Self::Edge => edge_figure()?,
             Self::Tone { exposure } => curves::tone_figure(*exposure),
+            Self::Growth(args) => args.figure()?,
         })
     }
 }

@@ -10,3 +10,4 @@ mod pictures;
 mod render;
 mod signals;
 mod support;
+mod team;
