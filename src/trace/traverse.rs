@@ -127,9 +127,9 @@ fn traverse(scene: &SceneView, ray: &Ray, any: bool, deepest: &mut u32) -> Hit {
     if scene.header.top_root == INVALID || !within_reach(ray.origin) {
         return hit;
     }
-    // A single instance needs no walk to be found. Rust only.
+    // A lone instance needs no walk to be found.
     if scene.top_instances.len() == 1 {
-        enter_instance(scene, ray, 0, any, &mut hit, deepest);
+        test_instance(scene, ray, load_top_instance(scene, 0), any, &mut hit, deepest);
         return hit;
     }
     let mut stack = Stack::new();
@@ -156,17 +156,17 @@ fn traverse(scene: &SceneView, ray: &Ray, any: bool, deepest: &mut u32) -> Hit {
         }
 
         if instances.y != 0 {
-            enter_instance(scene, ray, take_primitive(&mut instances), any, &mut hit, deepest);
+            let id = load_top_instance(scene, take_primitive(&mut instances));
+            test_instance(scene, ray, id, any, &mut hit, deepest);
         }
         walking = (instances.y != 0 || group.y > GROUP_EMPTY || !stack.is_empty()) && !(any && hit.instance != INVALID);
     }
     hit
 }
 
-/// Tests what stands at `place` of the top level's order; `hit` becomes the closer of it and what is found.
+/// Tests what instance `id` holds; `hit` becomes the closer of it and what is found.
 #[inline(always)]
-fn enter_instance(scene: &SceneView, ray: &Ray, place: u32, any: bool, hit: &mut Hit, deepest: &mut u32) {
-    let id = load_top_instance(scene, place);
+fn test_instance(scene: &SceneView, ray: &Ray, id: u32, any: bool, hit: &mut Hit, deepest: &mut u32) {
     let record = &scene.instances[id as usize];
     let origin = object_origin(record, ray.origin);
     if (any && (record.flags & INSTANCE_NO_SHADOW) != 0) || !within_reach(origin) {
