@@ -48,8 +48,16 @@ const NAMES: Stages<&str> = Stages {
     resolve: "resolve",
 };
 
-/// Specialisation constants that say what the scene uses (`shaders/kernels/bindings.glsl`).
-fn scene_constants(data: &SceneData) -> [(u32, u32); 14] {
+/// Every specialisation constant of a kernel that reads the scene (`shaders/kernels/bindings.glsl`).
+pub fn specialisation(scene: &SceneBuffers, data: &SceneData) -> Vec<(u32, u32)> {
+    let mut constants = vec![(0, WORKGROUP)];
+    constants.extend(scene.constants());
+    constants.extend(scene_constants(data));
+    constants
+}
+
+/// Those that say what the scene uses.
+fn scene_constants(data: &SceneData) -> [(u32, u32); 15] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
     let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
     let textures = data.materials.iter().any(|material| material.texture_count > 0);
@@ -70,6 +78,7 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 14] {
         (16, u32::from(data.materials.iter().any(|material| material.absorption != Vec3::ZERO))),
         (17, u32::from(facets)),
         (18, u32::from(textures)),
+        (19, u32::from(data.instances.len() == 1)),
     ]
 }
 
@@ -91,9 +100,7 @@ pub struct Kernels(Stages<Kernel>);
 impl Kernels {
     /// Compiles for the scene's way of fetching, its pages and what it uses, and for nothing else.
     pub fn new(context: &Context, scene: &SceneBuffers, data: &SceneData) -> Result<Kernels, VulkanError> {
-        let mut constants = vec![(0, WORKGROUP)];
-        constants.extend(scene.constants());
-        constants.extend(scene_constants(data));
+        let constants = specialisation(scene, data);
         let kernels = Stages { shade: shade_kernel(data), ..NAMES }.try_map(|name| {
             let words = shaders::kernel(name, scene.fetch())
                 .ok_or_else(|| VulkanError::Device(format!("this program was built without the kernel {name}")))?;
