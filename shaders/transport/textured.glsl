@@ -65,30 +65,25 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
 // `key`: of the path, which meets one surface at most.
 Material material_at(vec3 direction, Hit hit, SampleKey key, inout Surface surface) {
     Material material = load_material(surface.material);
-#ifdef CLASSIC_MODELS
-    material.color *= surface.color;
-    return apply_textures(material, direction, hit, surface);
-#else
-    float u = 0.0;
-    if (material.model == MODEL_BLEND) {
-        u = sample_1d(key, DIMENSION_LEAF);
-    }
-    for (uint level = 0u; level < MAX_LEAVES; level++) {
+    float u = HAS_MODEL(MODEL_BLEND) && material.model == MODEL_BLEND ? sample_1d(key, DIMENSION_LEAF) : 0.0;
+    uint level = 0u;
+    bool blends = false;
+    do {
         material.color *= surface.color;
         material = apply_textures(material, direction, hit, surface);
+        level += 1u;
         // Bake lets no blend be deeper.
-        if (material.model != MODEL_BLEND || level + 1u == MAX_LEAVES) {
-            break;
+        blends = HAS_MODEL(MODEL_BLEND) && material.model == MODEL_BLEND && level < MAX_LEAVES;
+        if (blends) {
+            float weight = clamp_(material.extra, 0.0, 1.0);
+            bool second = u < weight;
+            // What is left of u is as random again.
+            u = second ? div(u, weight) : div(u - weight, 1.0 - weight);
+            surface.material = second ? material.table + 1u : material.table;
+            material = load_material(surface.material);
         }
-        float weight = clamp_(material.extra, 0.0, 1.0);
-        bool second = u < weight;
-        // What is left of u is as random again.
-        u = second ? div(u, weight) : div(u - weight, 1.0 - weight);
-        surface.material = second ? material.table + 1u : material.table;
-        material = load_material(surface.material);
-    }
+    } while (blends);
     return material;
-#endif
 }
 
 #endif

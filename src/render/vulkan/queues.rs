@@ -9,8 +9,7 @@ use super::record::Recorder;
 use super::scene::SceneBuffers;
 use crate::bake::SceneData;
 use crate::layout::{
-    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, INTEGRATOR_PATH, KIND_SPHERE,
-    MODEL_EMISSIVE,
+    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, KIND_SPHERE,
 };
 use crate::shaders;
 use glam::Vec3;
@@ -82,18 +81,6 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 15] {
     ]
 }
 
-/// The kernel that shades: with paths or with trees of rays, and without the models beyond the classic ones where none of
-/// them is there. Drivers take seconds to inline and then cut away what specialisation leaves out.
-fn shade_kernel(data: &SceneData) -> &'static str {
-    let classic = data.materials.iter().all(|material| material.model <= MODEL_EMISSIVE);
-    match (data.header.integrator == INTEGRATOR_PATH, classic) {
-        (false, true) => "shade",
-        (false, false) => "shade_all",
-        (true, true) => "shade_path",
-        (true, false) => "shade_path_all",
-    }
-}
-
 /// The compiled kernels of a scene.
 pub struct Kernels(Stages<Kernel>);
 
@@ -101,7 +88,7 @@ impl Kernels {
     /// Compiles for the scene's way of fetching, its pages and what it uses, and for nothing else.
     pub fn new(context: &Context, scene: &SceneBuffers, data: &SceneData) -> Result<Kernels, VulkanError> {
         let constants = specialisation(scene, data);
-        let kernels = Stages { shade: shade_kernel(data), ..NAMES }.try_map(|name| {
+        let kernels = NAMES.try_map(|name| {
             let words = shaders::kernel(name, scene.fetch())
                 .ok_or_else(|| VulkanError::Device(format!("this program was built without the kernel {name}")))?;
             context.kernel(name, words, &constants, size_of::<Batch>())
