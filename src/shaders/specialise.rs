@@ -215,7 +215,8 @@ fn take_branch(block: &mut Block, known: &Known, before: &HashSet<Word>) -> bool
 
 /// Keeps what the first block reaches, and of the rest only the labels that headers must name.
 fn drop_unreachable(function: &mut Function) {
-    let places: HashMap<Word, usize> = function.blocks.iter().enumerate().map(|(at, block)| (label(block), at)).collect();
+    let places: HashMap<Word, usize> =
+        function.blocks.iter().enumerate().map(|(at, block)| (label(block), at)).collect();
     let mut reached = HashSet::from([0]);
     let mut waiting = vec![0];
     while let Some(at) = waiting.pop() {
@@ -260,7 +261,8 @@ fn prune_phis(function: &mut Function) {
     for block in &mut function.blocks {
         let from = sources.remove(&label(block)).unwrap_or_default();
         for phi in block.instructions.iter_mut().filter(|instruction| instruction.class.opcode == Op::Phi) {
-            let pairs: Vec<_> = phi.operands.chunks(2).filter(|pair| id(&pair[1]).is_some_and(|b| from.contains(&b))).collect();
+            let pairs: Vec<_> =
+                phi.operands.chunks(2).filter(|pair| id(&pair[1]).is_some_and(|b| from.contains(&b))).collect();
             *phi = match pairs[..] {
                 [pair] => with_op(phi, Op::CopyObject, vec![pair[0].clone()]),
                 _ => with_op(phi, Op::Phi, pairs.concat()),
@@ -307,16 +309,70 @@ mod tests {
     use super::*;
     use crate::shaders::{Fetch, kernel, names};
 
+    /// One model, one texture format, no rare feature: the least a scene asks for.
+    const LEAST: [(u32, u32); 14] = [
+        (0, 64),
+        (5, 12),
+        (6, 1),
+        (10, 0),
+        (11, 0),
+        (12, 1),
+        (13, 0),
+        (14, 0),
+        (15, 0),
+        (16, 0),
+        (17, 0),
+        (18, 0),
+        (19, 1),
+        (20, 1),
+    ];
+
+    fn specialised(name: &str, fetch: Fetch, constants: &[(u32, u32)]) -> Module {
+        let words = specialise(kernel(name, fetch).expect("named by the table"), constants).expect("valid");
+        rspirv::dr::load_words(words).expect("still valid")
+    }
+
     #[test]
-    fn dump() {
+    fn every_id_that_a_specialised_kernel_uses_is_there() {
         for name in names() {
             for fetch in [Fetch::Texel, Fetch::Storage] {
-                let start = std::time::Instant::now();
-                let w = kernel(name, fetch).unwrap();
-                let s = specialise(w, &[(0, 64), (5, 12), (6, 1 << 3), (10, 0), (11, 0), (12, 1), (13, 0), (14, 0), (15, 0), (16, 0), (17, 0), (18, 0), (19, 1)]).unwrap();
-                println!("{name} {} -> {} in {:?}", w.len(), s.len(), start.elapsed());
-                std::fs::write(format!("/tmp/mx/spv/{}.{:?}.spv", name.replace('/', "_"), fetch), bytemuck::cast_slice::<u32, u8>(&s)).unwrap();
+                let module = specialised(name, fetch, &LEAST);
+                let defined: HashSet<Word> = module.all_inst_iter().filter_map(|i| i.result_id).collect();
+                for instruction in module.all_inst_iter() {
+                    for used in instruction.operands.iter().filter_map(id).chain(instruction.result_type) {
+                        assert!(defined.contains(&used), "{name}: %{used} is gone from {instruction:?}");
+                    }
+                }
             }
         }
+    }
+
+    #[test]
+    fn no_specialisation_constant_is_left() {
+        for name in names() {
+            let module = specialised(name, Fetch::Texel, &LEAST);
+            for global in &module.types_global_values {
+                let left = matches!(
+                    global.class.opcode,
+                    Op::SpecConstant | Op::SpecConstantTrue | Op::SpecConstantFalse | Op::SpecConstantOp
+                );
+                assert!(!left, "{name}: {global:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_model_that_no_material_has_is_cut_from_the_kernel() {
+        let lambert = specialised("shade", Fetch::Texel, &LEAST).functions.len();
+        let all = specialised("shade", Fetch::Texel, &[(6, u32::MAX)]).functions.len();
+        assert!(lambert * 2 < all, "{lambert} of {all} functions are left");
+    }
+
+    #[test]
+    fn defaults_alone_cut_nothing_that_runs() {
+        let words = kernel("resolve", Fetch::Storage).expect("named by the table");
+        let before = rspirv::dr::load_words(words).expect("valid");
+        let after = specialised("resolve", Fetch::Storage, &[]);
+        assert_eq!(after.functions.len(), before.functions.len());
     }
 }

@@ -56,7 +56,7 @@ pub fn specialisation(scene: &SceneBuffers, data: &SceneData) -> Vec<(u32, u32)>
 }
 
 /// Those that say what the scene uses.
-fn scene_constants(data: &SceneData) -> [(u32, u32); 15] {
+fn scene_constants(data: &SceneData) -> [(u32, u32); 16] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
     let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
     let textures = data.materials.iter().any(|material| material.texture_count > 0);
@@ -78,6 +78,7 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 15] {
         (17, u32::from(facets)),
         (18, u32::from(textures)),
         (19, u32::from(data.instances.len() == 1)),
+        (20, data.textures.iter().fold(0, |mask, texture| mask | 1 << texture.format)),
     ]
 }
 
