@@ -16,11 +16,15 @@ use through::THROUGH;
 const TWINS: [&str; 4] = ["layout", "shading", "trace", "transport"];
 
 /// Functions whose twins differ or that have none: (folder and stem, function, why).
-const ALONE: [(&str, &str, &str); 4] = [
+const ALONE: [(&str, &str, &str); 8] = [
+    ("trace/box_", "approx_hit_bits", "the host tests eight boxes at a time"),
+    ("trace/box_", "approx_planes", "the host tests eight boxes at a time"),
     ("trace/traverse", "push", "GLSL writes to the stack, an array of the caller, in place"),
     ("trace/traverse", "stack_used", "measures the stack for tests of bake's bound"),
+    ("trace/traverse", "test_instance", "`deepest` measures the stack, on the host only"),
     ("trace/traverse", "traverse", "`deepest` measures the stack, on the host only"),
     ("trace/traverse", "walk_mesh", "`deepest` measures the stack, on the host only"),
+    ("trace/triangle", "signed_area", "the host computes three areas at a time"),
 ];
 
 /// What of the house each folder may use, from the table in ARCHITECTURE.md; `None` stands for everything.

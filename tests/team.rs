@@ -15,8 +15,8 @@ use gonio::scene::Scene;
 use scenes::{Take, assert_same};
 use std::ops::Range;
 use std::path::Path;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU32, Ordering};
+use std::sync::{Barrier, Mutex};
 use std::time::{Duration, Instant};
 
 const TAKE: Take = Take { width: 24, height: 16, samples: 40, seed: 3 };
@@ -104,16 +104,25 @@ fn the_device_and_the_cpu_together_make_the_film_of_one() {
     if let Err(error) = VulkanRenderer::new(&data, VulkanOptions::default()) {
         return device::skip(&error.to_string(), device::is_required());
     }
+    // Nobody begins before all are open: a driver may take its time.
+    let ready = Barrier::new(3);
     let vulkan = |chunk| -> Member<'_> {
-        let data = &data;
+        let (data, ready) = (&data, &ready);
         let open = move || -> Result<Box<dyn Renderer + '_>, RenderError> {
             let options = VulkanOptions { chunk, validate: true, ..VulkanOptions::default() };
-            Ok(Box::new(VulkanRenderer::new(data, options)?))
+            let renderer = VulkanRenderer::new(data, options)?;
+            ready.wait();
+            Ok(Box::new(renderer))
         };
         Member { name: "vulkan".to_owned(), open: Box::new(open) }
     };
+    let mut slow = flawed(&data, Duration::from_millis(50), None);
+    let (open, ready) = (slow.open, &ready);
+    slow.open = Box::new(move || {
+        ready.wait();
+        open()
+    });
     let mut film = scenes::film(&scene, &data);
-    let slow = flawed(&data, Duration::from_millis(50), None);
     let shares = run(vec![vulkan(None), slow, vulkan(Some(64))], 0..TAKE.samples, &mut film).unwrap();
     let alone = scenes::render_cpu(&scene, &data);
     assert_same(&alone, &film, "two devices and the CPU");

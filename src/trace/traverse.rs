@@ -31,19 +31,26 @@ fn is_closer(t: f32, instance: u32, primitive: u32, hit: &Hit) -> bool {
     t < hit.t || (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)))
 }
 
+/// Index of the highest bit of 1 <= x < 2^24, from the exponent of the float that it makes exactly: devices that are CPUs
+/// have no vector instruction for it.
+#[inline(always)]
+fn highest_bit(x: u32) -> u32 {
+    31 - x.leading_zeros()
+}
+
 /// Takes the nearest child out of a group: its index in the node array.
 #[inline(always)]
 fn take_child(group: &mut UVec2, octant: u32) -> u32 {
-    let bit = 31 - group.y.leading_zeros();
-    group.y &= !(1 << bit);
-    let slot = (bit - 24) ^ (octant & 255);
+    let bit = highest_bit(group.y >> 24);
+    group.y &= !(0x0100_0000 << bit);
+    let slot = bit ^ (octant & 255);
     group.x + (group.y & !(0xffff_ffff << slot)).count_ones()
 }
 
 /// Takes one primitive out of a primitive group: its index in its array.
 #[inline(always)]
 fn take_primitive(group: &mut UVec2) -> u32 {
-    let bit = 31 - group.y.leading_zeros();
+    let bit = highest_bit(group.y);
     group.y &= !(1 << bit);
     group.x + bit
 }
