@@ -57,19 +57,19 @@ pub enum Panels {
 /// The panels of the scene file with this stem.
 pub fn panels(stem: &str) -> Panels {
     match stem {
-        "phong" => Panels::Columns(&["n = 1", "n = 8", "n = 64"]),
-        "shading-models" => Panels::Columns(&["flat", "Gouraud", "Phong"]),
-        "cook-torrance" => Panels::Columns(&["copper", "gold", "silver", "plastic"]),
+        "02-phong" => Panels::Columns(&["n = 1", "n = 8", "n = 64"]),
+        "08-shading-models" => Panels::Columns(&["flat", "Gouraud", "Phong"]),
+        "14-cook-torrance" => Panels::Columns(&["copper", "gold", "silver", "plastic"]),
         "ambient" => {
             Panels::Variants(&[("without ambient term", "render.ambient=0"), ("with it", "render.shadows=true")])
         }
-        "zone-plate" => Panels::Variants(&[
+        "26-zone-plate" => Panels::Variants(&[
             ("box", "film.filter=box"),
             ("gaussian", "film.filter=gaussian"),
             ("blackman-harris", "film.filter=blackman-harris"),
             ("mitchell", "film.filter=mitchell"),
         ]),
-        "tone-curves" => Panels::Variants(&[
+        "06-tone-curves" => Panels::Variants(&[
             ("clamp", "film.tonemap=clamp"),
             ("normalise", "film.tonemap=normalise"),
             ("reinhard", "film.tonemap=reinhard"),
