@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
 /// Size of the page's plots, pixels.
-const PLOT: [u32; 2] = [900, 560];
+const PLOT: [u32; 2] = [680, 460];
 
 /// Renders the `.toml` files of `folder` into `into`: a PNG each, and `index.html`.
 pub fn run(folder: &Path, into: &Path, flags: &SceneFlags, backend: &BackendFlags) -> anyhow::Result<ExitCode> {

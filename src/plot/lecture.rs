@@ -169,10 +169,15 @@ pub fn plots(row: u32, scene: &Scene) -> Result<Vec<Figure>, PlotError> {
         3 => of_shelf(&|shelf, materials| vec![lobes::cartesian_figure(shelf, materials, 45.0)]),
         6 => Ok(vec![curves::tone_figure(0.0)]),
         7 => of_shelf(&|shelf, materials| {
-            vec![lobes::polar_figure(shelf, materials, 45.0), lobes::bodies_figure(shelf, materials, 45.0)]
+            let bodies = materials.chunks(3).map(|three| lobes::bodies_figure(shelf, three, 45.0));
+            std::iter::once(lobes::polar_figure(shelf, materials, 45.0)).chain(bodies).collect()
         }),
         8 => Ok(vec![edge_figure()?]),
-        10 | 14 => of_shelf(&|shelf, materials| vec![lobes::cartesian_figure(shelf, materials, 60.0)]),
+        10 => of_shelf(&|shelf, materials| vec![lobes::cartesian_figure(shelf, materials, 60.0)]),
+        14 => of_shelf(&|shelf, materials| {
+            let kinds = by_kind(shelf.names(), materials);
+            kinds.iter().map(|kind| lobes::cartesian_figure(shelf, kind, 60.0)).collect()
+        }),
         15 => Ok(vec![
             curves::distribution_figure(&FACETS[..1], &[0.2, 0.3, 0.4, 0.6]),
             curves::distribution_figure(&FACETS, &[0.3]),
@@ -184,6 +189,19 @@ pub fn plots(row: u32, scene: &Scene) -> Result<Vec<Figure>, PlotError> {
         23 => Ok(vec![curves::fresnel_figure(&[Interface::dielectric(1.5), Interface::dielectric(2.417)])]),
         _ => Ok(Vec::new()),
     }
+}
+
+/// Materials whose names begin with the same word before a comma, as in "copper, Phong"; those without a comma in none.
+fn by_kind(names: &[String], materials: &[usize]) -> Vec<Vec<usize>> {
+    let mut kinds: Vec<(&str, Vec<usize>)> = Vec::new();
+    for &index in materials {
+        let Some((kind, _)) = names[index].split_once(',') else { continue };
+        match kinds.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, members)) => members.push(index),
+            None => kinds.push((kind, vec![index])),
+        }
+    }
+    kinds.into_iter().map(|(_, members)| members).collect()
 }
 
 fn metals() -> Vec<Interface> {

@@ -57,18 +57,18 @@ const STYLE: &str = "\
 *{box-sizing:border-box}\
 body{margin:0 auto;padding:1rem;max-width:68rem;font:1rem/1.5 'Noto Sans',system-ui,sans-serif;color:#1e1e1e;background:#fff}\
 h1{font-size:1.8rem;line-height:1.2;margin:.5rem 0 1rem}h2{font-size:1.4rem;line-height:1.25;margin:0 0 .6rem}\
-h3{font-size:1.05rem;margin:1.6rem 0 .3rem}p{margin:.4rem 0;max-width:46rem}\
+h3{font-size:1.05rem;margin:1.6rem 0 .3rem}p{margin:.5rem 0;max-width:58rem}\
 section{border-top:1px solid #ccc;padding:1.6rem 0}\
 nav{columns:17rem;line-height:1.8}nav a{display:block}a{color:#0b57a4}\
 .formula{background:#f4f4f4;padding:.5rem .8rem;overflow-x:auto;overflow-y:hidden}\
-math{font-size:1.15rem;margin:.45rem 0}math[display=block]{text-align:left;width:max-content}\
+math{font-family:'STIX Two Math','Cambria Math','Latin Modern Math','DejaVu Math TeX Gyre','Noto Sans Math',math;font-size:1.15rem;margin:.45rem 0}math[display=block]{text-align:left;width:max-content}\
 .panels{display:grid;gap:.5rem;grid-template-columns:repeat(var(--columns),minmax(0,1fr));margin:.7rem 0}\
 figure{margin:0}figcaption{text-align:center;font-size:.95rem;line-height:1.3;padding:.2rem 0}\
 img,svg{display:block;max-width:100%;height:auto;margin:0 auto}\
 .panels.several img{width:100%}\
 .plots{display:grid;gap:1rem;grid-template-columns:repeat(auto-fit,minmax(min(100%,30rem),1fr));margin:1rem 0}\
 .plot{overflow-x:auto}.plot svg{min-width:30rem}\
-@media(max-width:40rem){.panels.several{grid-template-columns:repeat(2,minmax(0,1fr))}figcaption{font-size:.85rem}}\
+@media(max-width:40rem){.panels{grid-template-columns:repeat(var(--narrow),minmax(0,1fr));gap:.3rem}figcaption{font-size:.8rem}}\
 pre{overflow-x:auto;background:#f4f4f4;padding:.7rem;font-size:.85rem;line-height:1.4}summary{cursor:pointer;color:#555}";
 
 /// Text as HTML shows it.
@@ -129,7 +129,12 @@ fn scene(entry: &Entry) -> String {
     let name = escaped(&entry.name);
     let several = if entry.pictures.len() > 1 { " several" } else { "" };
     let columns = entry.columns.clamp(1, entry.pictures.len().max(1));
-    let mut html = format!("<p>{}</p>\n<div class=\"panels{several}\" style=\"--columns:{columns}\">\n", escaped(&entry.caption));
+    // On a telephone three small ones side by side compare better than large ones below each other.
+    let narrow = if columns > 3 { 2 } else { columns };
+    let mut html = format!(
+        "<p>{}</p>\n<div class=\"panels{several}\" style=\"--columns:{columns};--narrow:{narrow}\">\n",
+        escaped(&entry.caption)
+    );
     for (label, png) in &entry.pictures {
         let label = label.as_deref().map(escaped);
         let alt = label.as_ref().map_or_else(|| name.clone(), |label| format!("{name}: {label}"));
