@@ -13,6 +13,7 @@ pub mod plot;
 mod progress;
 pub mod render;
 mod setup;
+mod sheet;
 pub mod verify;
 
 use anyhow::Context;

@@ -19,7 +19,7 @@ use std::process::ExitCode;
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  gonio plot lobe scenes/lecture/cook-torrance.toml --theta 60 -o lobes.svg
+  gonio plot lobe scenes/lecture/14-cook-torrance.toml --theta 60 -o lobes.svg
   gonio plot lobe scene.toml --material brass --material clay --cartesian -o lobes.png
   gonio plot cos-n --n 1,8,64 -o highlight.svg
   gonio plot fresnel --metal Cu -o - | display")]
