@@ -18,6 +18,7 @@ mod mip;
 mod model;
 mod scene;
 pub mod srgb;
+mod tabulated;
 mod texture;
 mod wide;
 
