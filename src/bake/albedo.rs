@@ -78,7 +78,7 @@ fn cosine_mean(f: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// The Gaussian's c, so that the integral of D cos over the hemisphere is 1.
-fn gaussian_scale(alpha: f32) -> f64 {
+pub fn gaussian_scale(alpha: f32) -> f64 {
     const STEPS: u32 = 4096;
     let alpha = f64::from(alpha);
     // e^-36 and less is nothing.

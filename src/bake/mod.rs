@@ -22,6 +22,7 @@ mod tabulated;
 mod texture;
 mod wide;
 
+pub use albedo::gaussian_scale;
 pub use data::{BakeTimes, HeapPiece, SceneData};
 pub use scene::bake;
 
