@@ -66,6 +66,7 @@ fn steps(end: u32, step: u32) -> Vec<f64> {
 
 fn grid() -> Grid {
     Grid {
+        comment: "A test",
         light_theta: steps(80, 10),
         light_phi: 9,
         symmetry: 2,
@@ -233,6 +234,34 @@ fn a_table_of_a_reciprocal_surface_is_reciprocal_within_its_steps() {
         }
     }
     assert!(sum / f64::from(count) < 5e-3, "{}", sum / f64::from(count));
+}
+
+/// The table of scenes/lecture/09-measured.toml. GONIO_UPDATE=1 writes it.
+#[test]
+fn the_brushed_table_of_the_scenes_is_what_its_head_says() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/tables/brushed.brdf");
+    let grid = Grid {
+        comment: "Aluminium of GGX facets, alpha .12 and .4, computed as a goniophotometer would have measured it",
+        view_theta: steps(84, 3),
+        view_phi: 60,
+        channels: 1,
+        ..grid()
+    };
+    let fresnel = Fresnel::Schlick { f0: Rgb::splat(0.92) };
+    let (alpha_u, alpha_v) = (0.12, 0.4);
+    let distribution = Distribution::TrowbridgeReitz;
+    let model = Model::RoughConductor { distribution, alpha_u, alpha_v, fresnel, compensate: false };
+    let metal = Baked::new(Material { model, ..Material::grey("metal") });
+    let value = |light: Vec3, view: Vec3| {
+        [f64::from(eval_material(&metal.view(), &metal.material(), view, light).x) / f64::from(light.z); 3]
+    };
+    let expected = grid.float_file(value);
+    if std::env::var_os("GONIO_UPDATE").is_some() {
+        fs::create_dir_all(file.parent().expect("a folder")).expect("writable");
+        fs::write(&file, &expected).expect("writable");
+    }
+    let written = fs::read(&file).expect("scenes/tables/brushed.brdf; GONIO_UPDATE=1 writes it");
+    assert!(written == expected, "GONIO_UPDATE=1 cargo test --test measured writes it");
 }
 
 #[test]

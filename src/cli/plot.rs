@@ -8,8 +8,8 @@ use crate::plot::curves::{self, FACETS, Facets, Interface, InterfaceKind};
 use crate::plot::edge::edge_figure;
 use crate::plot::shelf::Shelf;
 use crate::plot::{Figure, Format, lobes, render};
-use crate::scene::load::toml::{METALS, nearest};
 use crate::scene::load::staging::bare_scene;
+use crate::scene::load::toml::{METALS, nearest};
 use crate::scene::load::{self, Override};
 use crate::scene::{Distribution, Fresnel, Lobe, Masking, Material, Model, Rgb, Scene};
 use anyhow::Context;
@@ -322,10 +322,8 @@ impl ShelfArgs {
     /// The error for a material that is not there.
     pub fn unknown(scene: &Scene, name: &str) -> Usage {
         let known: Vec<&str> = scene.materials.iter().map(|material| material.name.as_str()).collect();
-        let hint = nearest(name, known.iter().copied()).map_or_else(
-            || format!("; there are {}", known.join(", ")),
-            |near| format!("; did you mean {near:?}?"),
-        );
+        let hint = nearest(name, known.iter().copied())
+            .map_or_else(|| format!("; there are {}", known.join(", ")), |near| format!("; did you mean {near:?}?"));
         Usage(format!("there is no material {name:?}{hint}"))
     }
 

@@ -138,9 +138,8 @@ fn pairs(shelf: &Shelf, index: usize, anisotropic: bool) -> Vec<Pair> {
                 let theta_d = FRAC_PI_2 * middle(d, differences);
                 let sizes = libm::sin(theta_h) * x * libm::sin(theta_d) * libm::cos(theta_d);
                 for a in 0..azimuths {
-                    let [wi, wo] = [0.0, PI].map(|half_turn| {
-                        turned(theta_h, phi_h, polar(theta_d, TAU * middle(a, azimuths) + half_turn))
-                    });
+                    let [wi, wo] = [0.0, PI]
+                        .map(|half_turn| turned(theta_h, phi_h, polar(theta_d, TAU * middle(a, azimuths) + half_turn)));
                     if wi.z.min(wo.z) > COS_LEAST {
                         found.push((wo.as_vec3(), wi.as_vec3(), sizes));
                     }
@@ -148,7 +147,10 @@ fn pairs(shelf: &Shelf, index: usize, anisotropic: bool) -> Vec<Pair> {
             }
         }
     }
-    found.into_par_iter().map(|(wo, wi, weight)| Pair { wo, wi, weight, value: shelf.eval_rgb(index, wo, wi) }).collect()
+    found
+        .into_par_iter()
+        .map(|(wo, wi, weight)| Pair { wo, wi, weight, value: shelf.eval_rgb(index, wo, wi) })
+        .collect()
 }
 
 fn polar(theta: f64, phi: f64) -> DVec3 {
@@ -297,7 +299,13 @@ fn digits(value: f64) -> String {
 
 /// The material's lobe for light from `theta` degrees and, dashed, those of the fits with their errors; in a polar picture by
 /// cube roots, so that the base is seen beside the highlight (as Ngan et al. draw them).
-pub fn fit_figure(scene: &Scene, index: usize, fitting: &Fitting, theta: f64, polar: bool) -> Result<Figure, BakeError> {
+pub fn fit_figure(
+    scene: &Scene,
+    index: usize,
+    fitting: &Fitting,
+    theta: f64,
+    polar: bool,
+) -> Result<Figure, BakeError> {
     let mut scene = scene.clone();
     let first = scene.materials.len();
     for fit in &fitting.fits {

@@ -1,7 +1,9 @@
 //! How materials reflect over angle: lobes, flat and in perspective, and directional albedo.
 
 use super::curves::direction;
-use super::figure::{Arrow, Axis, Body, Color, Curve, Facet, Figure, Frame, Mark, PALETTE, STEPS, Side, nice_step, palette};
+use super::figure::{
+    Arrow, Axis, Body, Color, Curve, Facet, Figure, Frame, Mark, PALETTE, STEPS, Side, nice_step, palette,
+};
 use super::shelf::{Shelf, shelf_of};
 use crate::bake::BakeError;
 use crate::scene::{Material, Model};

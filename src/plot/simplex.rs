@@ -35,7 +35,8 @@ pub fn minimise(start: &[f64], step: f64, value: impl Fn(&[f64]) -> f64) -> Vert
         let centre: Vec<f64> =
             (0..start.len()).map(|i| rest.iter().map(|v| v.0[i]).sum::<f64>() / rest.len() as f64).collect();
         // `t` from the centre, -1 being the last vertex itself.
-        let along = |last: &Vertex, t: f64| centre.iter().zip(&last.0).map(|(c, l)| c + t * (c - l)).collect::<Vec<_>>();
+        let along =
+            |last: &Vertex, t: f64| centre.iter().zip(&last.0).map(|(c, l)| c + t * (c - l)).collect::<Vec<_>>();
         let (reflected, more) = at(along(last, 1.0));
         if !more {
             break;

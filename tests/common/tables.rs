@@ -8,6 +8,8 @@ use std::fmt::Write;
 /// A table's grid in gonio's own format.
 #[derive(Clone, Debug)]
 pub struct Grid {
+    /// The file's second line.
+    pub comment: &'static str,
     /// Degrees.
     pub light_theta: Vec<f64>,
     pub light_phi: u32,
@@ -40,7 +42,7 @@ impl Grid {
 
     fn head(&self, data: &str) -> String {
         let list = |angles: &[f64]| angles.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
-        let mut head = format!("gonio-brdf 1\n# a test\nlight_theta {}\n", list(&self.light_theta));
+        let mut head = format!("gonio-brdf 1\n# {}\nlight_theta {}\n", self.comment, list(&self.light_theta));
         let from = if self.from_surface { "surface" } else { "light" };
         let _ = writeln!(head, "light_phi {}\nsymmetry {}", self.light_phi, self.symmetry);
         let _ = writeln!(head, "view_theta {}\nview_phi {}", list(&self.view_theta), self.view_phi);
