@@ -4,6 +4,7 @@ pub mod bench;
 pub mod compare;
 pub mod devices;
 mod exact;
+mod fit;
 mod gallery;
 mod interrupt;
 pub mod merge;

@@ -23,7 +23,7 @@ pub use material::{
 };
 pub use mesh::Mesh;
 pub use settings::{Background, Environment, Film, Filter, Integrator, RenderSettings, Sampler, Shading, ToneMap};
-pub use table::Table;
+pub use table::{DirectionalTable, Table};
 pub use texture::{Pattern, PatternKind, Texture, TextureData, Wrap};
 pub use transform::Transform;
 

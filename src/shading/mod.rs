@@ -50,6 +50,7 @@ pub mod rough_conductor;
 pub mod rough_dielectric;
 pub mod sampling;
 pub mod spectrum;
+pub mod tabulated;
 pub mod texture;
 pub mod ward;
 pub mod warp;
