@@ -139,7 +139,7 @@ pub fn empty_scene() -> Scene {
             min_weight: 0.001,
             rr_depth: 5,
             clamp: None,
-            shadows: true,
+            shadows: Shadows::Opaque,
             shading: Shading::Phong,
         },
         camera: Camera {
