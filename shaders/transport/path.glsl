@@ -5,7 +5,8 @@
 // weighted by the power heuristic. A path goes on as one ray. `direct` is the case of one scattering event.
 //
 // Panes (k_t, opacity) are a choice at random between the surface and what lies behind; passing is no scattering event.
-// Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit.
+// Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit; filtered shadow rays do
+// (`transport/shadow`), and a ray that passes one stays a sample of the direction it was drawn with.
 #ifndef TRANSPORT_PATH_GLSL
 #define TRANSPORT_PATH_GLSL
 
@@ -20,6 +21,7 @@
 #include "trace/surface.glsl"
 #include "transport/emitter.glsl"
 #include "transport/local.glsl"
+#include "transport/nested.glsl"
 #include "transport/mod.glsl"
 #include "transport/weight.glsl"
 
@@ -107,6 +109,10 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
     if ((bsdf.flags & SAMPLE_TRANSMIT) != 0u && material.model != MODEL_THIN_DIELECTRIC) {
         next.eta = path.eta * bsdf.eta;
         next.absorption = bsdf.wi.z < 0.0 ? material.absorption : vec3(0.0);
+        if (SCENE_NESTED) {
+            next.interior = cross_interface(path.interior, material, bsdf.wi.z < 0.0);
+            next.absorption = medium_absorption(next.interior);
+        }
     }
     if (next.depth >= header.rr_depth) {
         float survives = survival(next.throughput, next.eta);
@@ -127,12 +133,16 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
 void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Material material) {
     PathState path = incoming;
     vec3 direction = path.ray.direction;
+    const bool filtered = SCENE_SHADOWS == SHADOWS_FILTERED;
+    // How far before the ray's origin its direction was drawn.
+    float passed = 0.0;
+    if (filtered && path.depth > 0u) {
+        passed = path.coverage;
+        path.coverage = 0.0;
+    }
     if (SCENE_HAS_PANES && material.k_t > 0.0) {
         float own = own_weight(material);
-        vec4 tint = vec4(material.k_t);
-        if ((material.flags & MATERIAL_FILTERED) != 0u) {
-            tint *= spectrum_from_rgb(material.transmit_color);
-        }
+        vec4 tint = pane_tint(material);
         // Each side as often as it is bright.
         float share = spectrum_max(tint);
         float through = div(share, own + share);
@@ -140,7 +150,11 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Mat
             path.throughput *= tint * rcp(through);
             path.coverage *= material.k_t * rcp(through);
             path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
-            path.pdf = 0.0;
+            if (!filtered) {
+                path.pdf = 0.0;
+            } else if (path.depth > 0u) {
+                path.coverage = passed + hit.t;
+            }
             path.ray = spawn_through(surface, direction, path.ray.t_max);
             push_path(path);
             return;
@@ -155,7 +169,8 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Mat
     if (glows || path.coverage != 0.0) {
         float weight = 1.0;
         if (glows && path.pdf > 0.0) {
-            float sampled = pdf_emitter(path.ray.origin, direction, hit.t, surface);
+            vec3 from = filtered ? path.ray.origin - direction * passed : path.ray.origin;
+            float sampled = pdf_emitter(from, direction, filtered ? passed + hit.t : hit.t, surface);
             weight = power_heuristic(path.pdf, sampled);
         }
         Spectrum seen = limited(path.depth, path.throughput * (own_light * weight));

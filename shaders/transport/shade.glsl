@@ -8,9 +8,10 @@
 #include "shading/sampling.glsl"
 #include "shading/spectrum.glsl"
 #include "trace/surface.glsl"
-#include "transport/generate.glsl"
 #include "transport/faceted.glsl"
+#include "transport/generate.glsl"
 #include "transport/local.glsl"
+#include "transport/nested.glsl"
 #include "transport/path.glsl"
 #include "transport/textured.glsl"
 #include "transport/whitted.glsl"
@@ -45,6 +46,9 @@ void shade(PathState incoming, Hit hit) {
     Surface surface = surface_at(path.ray, hit);
     uint named = surface.material;
     Material material = material_at(path.ray.direction, hit, key, surface);
+    if (SCENE_NESTED && !meet_interface(path, surface, material)) {
+        return;
+    }
     if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);

@@ -47,6 +47,17 @@ pub enum LightKind {
     },
 }
 
+/// The box of the world that a light reaches (Warn 1983: planes of constant x, y or z, `min <= max`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flaps {
+    pub min: Vec3,
+    pub max: Vec3,
+}
+
+impl Flaps {
+    pub const NONE: Self = Self { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+}
+
 /// One light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
@@ -56,5 +67,6 @@ pub struct Light {
     pub intensity: Rgb,
     pub unit: IntensityUnit,
     pub attenuation: Attenuation,
+    pub flaps: Flaps,
     pub casts_shadow: bool,
 }

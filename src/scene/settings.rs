@@ -133,6 +133,18 @@ impl Background {
     }
 }
 
+/// What shadow rays do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shadows {
+    /// None is traced.
+    Off,
+    /// Whatever they meet stops them; panes are not met (row 22's assumption), but by paths.
+    #[default]
+    Opaque,
+    /// Panes colour and weaken them.
+    Filtered,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderSettings {
     pub integrator: Integrator,
@@ -148,7 +160,7 @@ pub struct RenderSettings {
     pub rr_depth: u32,
     /// Largest channel of what one contribution of scattered light may add to a pixel (path).
     pub clamp: Option<f32>,
-    pub shadows: bool,
+    pub shadows: Shadows,
     /// Of objects that do not say otherwise; `local` only.
     pub shading: Shading,
 }

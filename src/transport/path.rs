@@ -5,10 +5,12 @@
 //! weighted by the power heuristic. A path goes on as one ray. `direct` is the case of one scattering event.
 //!
 //! Panes (k_t, opacity) are a choice at random between the surface and what lies behind; passing is no scattering event.
-//! Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit.
+//! Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit; filtered shadow rays do
+//! (`transport/shadow`), and a ray that passes one stays a sample of the direction it was drawn with.
 
 use super::emitter::{casts_shadow, choose_emitter, pdf_emitter, sample_emitter};
 use super::local::{SHADOW_END, emitted, is_hidden_back, shading_frame};
+use super::nested::medium_absorption;
 use super::weight::{consistent, power_heuristic, survival};
 use super::{
     DIMENSION_BSDF, DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, DIMENSION_LOBE, DIMENSION_PANE, DIMENSION_ROULETTE,
@@ -16,13 +18,14 @@ use super::{
     count_limited, push_path, push_shadow,
 };
 use crate::layout::{
-    EMITTER_LIGHT, Hit, MATERIAL_FILTERED, MODEL_THIN_DIELECTRIC, Material, PathState, SceneView, ShadowRay,
-    T_INFINITE, load_emitter,
+    EMITTER_LIGHT, Hit, MODEL_THIN_DIELECTRIC, Material, PathState, SHADOWS_FILTERED, SceneView, ShadowRay, T_INFINITE,
+    load_emitter,
 };
 use crate::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
 use crate::shading::environment::{background, pdf_environment};
 use crate::shading::frame::{Frame, to_local, to_world};
-use crate::shading::material::{eval_material, is_delta, own_weight, pdf_material, sample_material};
+use crate::shading::interior::cross_interface;
+use crate::shading::material::{eval_material, is_delta, own_weight, pane_tint, pdf_material, sample_material};
 use crate::shading::math::{div, rcp};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, sample_1d, sample_2d};
 use crate::shading::spectrum::{Spectrum, spectrum_flush, spectrum_from_rgb, spectrum_max};
@@ -96,7 +99,7 @@ fn shade_emitter(
     let dither = dither_hash(key, DITHER_LIGHT);
     if casts_shadow(scene, &emitter) {
         let ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
-        push_shadow(queues, ShadowRay { ray, contribution, slot: path.slot, dither, _pad0: 0, _pad1: 0 });
+        push_shadow(queues, ShadowRay { ray, contribution, slot: path.slot, dither, layer: 0, _pad0: 0 });
     } else {
         add_contribution(queues, scene.header.film_scale, path.slot, contribution, dither);
     }
@@ -134,6 +137,10 @@ fn scatter(
     if (bsdf.flags & SAMPLE_TRANSMIT) != 0 && material.model != MODEL_THIN_DIELECTRIC {
         next.eta = path.eta * bsdf.eta;
         next.absorption = if bsdf.wi.z < 0.0 { material.absorption } else { Vec3::ZERO };
+        if scene.header.nested != 0 {
+            next.interior = cross_interface(path.interior, material, bsdf.wi.z < 0.0);
+            next.absorption = medium_absorption(scene, next.interior);
+        }
     }
     if next.depth >= scene.header.rr_depth {
         let survives = survival(next.throughput, next.eta);
@@ -162,12 +169,16 @@ pub fn shade_path(
 ) {
     let mut path = *incoming;
     let direction = path.ray.direction;
+    let filtered = scene.header.shadows == SHADOWS_FILTERED;
+    // How far before the ray's origin its direction was drawn.
+    let mut passed = 0.0;
+    if filtered && path.depth > 0 {
+        passed = path.coverage;
+        path.coverage = 0.0;
+    }
     if material.k_t > 0.0 {
         let own = own_weight(material);
-        let mut tint = Vec4::splat(material.k_t);
-        if (material.flags & MATERIAL_FILTERED) != 0 {
-            tint *= spectrum_from_rgb(material.transmit_color);
-        }
+        let tint = pane_tint(material);
         // Each side as often as it is bright.
         let share = spectrum_max(tint);
         let through = div(share, own + share);
@@ -175,7 +186,11 @@ pub fn shade_path(
             path.throughput *= tint * rcp(through);
             path.coverage *= material.k_t * rcp(through);
             path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
-            path.pdf = 0.0;
+            if !filtered {
+                path.pdf = 0.0;
+            } else if path.depth > 0 {
+                path.coverage = passed + hit.t;
+            }
             path.ray = spawn_through(surface, direction, path.ray.t_max);
             push_path(queues, path);
             return;
@@ -190,7 +205,8 @@ pub fn shade_path(
     if glows || path.coverage != 0.0 {
         let mut weight = 1.0;
         if glows && path.pdf > 0.0 {
-            let sampled = pdf_emitter(scene, path.ray.origin, direction, hit.t, surface);
+            let from = path.ray.origin - direction * passed;
+            let sampled = pdf_emitter(scene, from, direction, passed + hit.t, surface);
             weight = power_heuristic(path.pdf, sampled);
         }
         let seen = limited(scene, path.depth, path.throughput * (own_light * weight), queues);

@@ -139,7 +139,7 @@ pub fn empty_scene() -> Scene {
             min_weight: 0.001,
             rr_depth: 5,
             clamp: None,
-            shadows: true,
+            shadows: Shadows::Opaque,
             shading: Shading::Phong,
         },
         camera: Camera {
@@ -147,6 +147,7 @@ pub fn empty_scene() -> Scene {
             target: Vec3::ZERO,
             up: Vec3::Y,
             projection: Projection::Perspective { fov_y: 1.0 },
+            lens: None,
         },
         background: Background::BLACK,
         ambient: Vec3::ZERO,

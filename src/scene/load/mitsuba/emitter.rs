@@ -6,7 +6,7 @@ use super::object::{Child, Object};
 use super::spectrum::Role;
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::intern;
-use crate::scene::{Attenuation, Background, Environment, IntensityUnit, Light, LightKind, Rgb, Wrap};
+use crate::scene::{Attenuation, Background, Environment, Flaps, IntensityUnit, Light, LightKind, Rgb, Wrap};
 use glam::{DVec3, Vec3};
 
 impl Loader<'_> {
@@ -101,7 +101,15 @@ impl Loader<'_> {
         let intensity = object.color(strength, Role::Emission)?.unwrap_or(Rgb::ONE);
         let name = self.document.attribute(object.node, "id").unwrap_or(object.plugin.name).to_owned();
         let unit = IntensityUnit::Radiometric;
-        self.scene.lights.push(Light { name, kind, intensity, unit, attenuation, casts_shadow: true });
+        self.scene.lights.push(Light {
+            name,
+            kind,
+            intensity,
+            unit,
+            attenuation,
+            flaps: Flaps::NONE,
+            casts_shadow: true,
+        });
         Ok(())
     }
 
