@@ -4,8 +4,9 @@
 // the children in the top byte | mask of inner children in the lowest byte), a *primitive group* is (first primitive, one
 // bit a primitive). What is not taken yet waits on a stack. Each turn takes one node or one primitive off, so the loops end.
 //
-// Three loops, one inside another, and not one loop with branches for both levels: devices that walk lanes in lockstep
-// run every branch of a loop's body on each turn, whether a lane takes it or not, so what is rare has a loop of its own.
+// Loops inside one another, and not one loop with branches for both levels: devices that walk lanes in lockstep run every
+// branch of a loop's body on each turn, whether a lane takes it or not, so what is rare has a loop of its own. Each ends by
+// a `break` at its end, under a header that decides nothing (ARCHITECTURE.md, "Loops").
 #ifndef TRACE_TRAVERSE_GLSL
 #define TRACE_TRAVERSE_GLSL
 #ifdef GONIO_FETCH
@@ -16,6 +17,8 @@
 #include "trace/sphere.glsl"
 #include "trace/triangle.glsl"
 
+// More turns than any loop here takes.
+const uint TURNS_MOST = 0xffffffffu;
 // Groups with no child left are at most this.
 const uint GROUP_EMPTY = 0x00ffffffu;
 // Hit bits of a group whose only child is a root: priority 7 of an empty mask of inner children.
@@ -90,10 +93,9 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
     uvec2 group = uvec2(root, GROUP_ROOT);
     uvec2 triangles = uvec2(0u);
     bool walking = true;
-    do {
+    for (uint turn = 0u; turn < TURNS_MOST; turn++) {
         // Nodes until there are triangles.
-        bool seeking = true;
-        do {
+        for (uint step_ = 0u; step_ < TURNS_MOST; step_++) {
             uint index = take_child(group, level.octant);
             stack[height] = group;
             height += group.y > GROUP_EMPTY ? 1u : 0u;
@@ -108,15 +110,22 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
                     group = stack[height];
                 }
             }
-            seeking = walking && triangles.y == 0u;
-        } while (seeking);
-        do {
+            if (!walking || triangles.y != 0u) {
+                break;
+            }
+        }
+        for (uint step_ = 0u; step_ < TURNS_MOST; step_++) {
             if (triangles.y != 0u) {
                 test_triangle(ray, level, instance, take_primitive(triangles), hit);
             }
-        } while (triangles.y != 0u);
-        walking = walking && !(any && hit.instance != INVALID);
-    } while (walking);
+            if (triangles.y == 0u) {
+                break;
+            }
+        }
+        if (!walking || (any && hit.instance != INVALID)) {
+            break;
+        }
+    }
 }
 
 // Tests what instance `id` holds; `hit` becomes the closer of it and what is found.
@@ -149,10 +158,9 @@ Hit traverse(Ray ray, bool any, bool casting) {
     LevelRay world = prepare_ray(ray.origin, ray.direction);
     uvec2 group = uvec2(header.top_root, GROUP_ROOT);
     uvec2 instances = uvec2(0u);
-    bool walking = true;
-    do {
+    for (uint turn = 0u; turn < TURNS_MOST; turn++) {
         // Nodes until there is an instance.
-        do {
+        for (uint step_ = 0u; step_ < TURNS_MOST; step_++) {
             if (instances.y == 0u) {
                 if (group.y <= GROUP_EMPTY) {
                     height -= 1u;
@@ -168,13 +176,19 @@ Hit traverse(Ray ray, bool any, bool casting) {
                 group = uvec2(node.child_base, (hits & 0xff000000u) | (node.exponents_imask >> 24u));
                 instances = uvec2(node.primitive_base, hits & GROUP_EMPTY);
             }
-        } while (instances.y == 0u && (group.y > GROUP_EMPTY || height != 0u));
+            if (instances.y != 0u || (group.y <= GROUP_EMPTY && height == 0u)) {
+                break;
+            }
+        }
 
         if (instances.y != 0u) {
             test_instance(ray, load_top_instance(take_primitive(instances)), any, casting, hit);
         }
-        walking = (instances.y != 0u || group.y > GROUP_EMPTY || height != 0u) && !(any && hit.instance != INVALID);
-    } while (walking);
+        bool done = instances.y == 0u && group.y <= GROUP_EMPTY && height == 0u;
+        if (done || (any && hit.instance != INVALID)) {
+            break;
+        }
+    }
     return hit;
 }
 
