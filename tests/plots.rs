@@ -203,7 +203,8 @@ fn panels_stand_in_rows_over_their_names() {
     let at = |x: u32, y: u32| whole.pixels[(y * whole.width + x) as usize][0];
     let seen = [at(0, 0), at(39, 19), at(42, 5), at(46, 0), at(85, 19), at(3, 50), at(39, 69), at(60, 60)];
     assert_eq!(seen.map(|v| v / 257), [10, 10, 255, 200, 200, 90, 90, 255]);
-    let inked = |x: std::ops::Range<u32>, y: std::ops::Range<u32>| x.clone().any(|x| y.clone().any(|y| at(x, y) < 32_768));
+    let inked =
+        |x: std::ops::Range<u32>, y: std::ops::Range<u32>| x.clone().any(|x| y.clone().any(|y| at(x, y) < 32_768));
     assert!(inked(5..35, 20..44) && inked(50..80, 20..44) && !inked(41..45, 20..44) && inked(0..40, 70..94));
     assert!(!inked(46..86, 50..94), "the last row has one picture");
 }

@@ -132,16 +132,16 @@ pub fn run(args: &ParityArgs, _quiet: bool) -> anyhow::Result<ExitCode> {
     for path in &args.scenes {
         let sheet = Sheet::open(&args.scene_flags, path)?;
         for scene in sheet.scenes() {
-        let (label, scene) = scene?;
-        let result = args.compare_scene(path, label, &scene, &contenders)?;
-        agree &= result.comparisons.iter().all(|comparison| comparison.differ == 0);
-        if !args.json {
-            print_result(&result)?;
-        }
-        if let Some(expected) = &expected {
-            agree &= check_expected(&result, expected, args.json)?;
-        }
-        results.push(result);
+            let (label, scene) = scene?;
+            let result = args.compare_scene(path, label, &scene, &contenders)?;
+            agree &= result.comparisons.iter().all(|comparison| comparison.differ == 0);
+            if !args.json {
+                print_result(&result)?;
+            }
+            if let Some(expected) = &expected {
+                agree &= check_expected(&result, expected, args.json)?;
+            }
+            results.push(result);
         }
     }
     if args.json {
@@ -306,8 +306,14 @@ fn read_expected(path: &Path) -> anyhow::Result<Expected> {
     let scenes = document["scenes"].as_array().ok_or_else(|| bad("no list \"scenes\""))?;
     let entry = |scene: &serde_json::Value| {
         let number = |name: &str| scene[name].as_u64();
-        let key =
-            key(scene["scene"].as_str()?, scene["panel"].as_str(), number("width")?, number("height")?, number("samples")?, number("seed")?);
+        let key = key(
+            scene["scene"].as_str()?,
+            scene["panel"].as_str(),
+            number("width")?,
+            number("height")?,
+            number("samples")?,
+            number("seed")?,
+        );
         Some((key, scene["film_hash"].as_str()?.to_owned()))
     };
     scenes.iter().map(|scene| entry(scene).ok_or_else(|| bad("an entry of \"scenes\" lacks a member").into())).collect()
@@ -316,7 +322,8 @@ fn read_expected(path: &Path) -> anyhow::Result<Expected> {
 /// Whether the reference film has the recorded hash; an unrecorded scene is a difference.
 fn check_expected(result: &SceneResult, expected: &Expected, quiet: bool) -> std::io::Result<bool> {
     let panel = result.panel.as_deref();
-    let key = key(&result.scene, panel, result.width.into(), result.height.into(), result.samples.into(), result.seed.into());
+    let key =
+        key(&result.scene, panel, result.width.into(), result.height.into(), result.samples.into(), result.seed.into());
     let (line, same) = match expected.get(&key) {
         Some(hash) if *hash == result.film_hash => (format!("{key}: the recorded hash"), true),
         Some(hash) => (format!("{key}: hash {} differs from the recorded {hash}", result.film_hash), false),

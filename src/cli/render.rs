@@ -151,7 +151,8 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         panels => sheet::write(&sheet, panels, &args.picture, output)?,
     }
     if let Some(mut file) = stats_file {
-        let stats = if sheet.is_divided() { serde_json::json!({ "schema": 1, "panels": stats }) } else { stats.remove(0) };
+        let stats =
+            if sheet.is_divided() { serde_json::json!({ "schema": 1, "panels": stats }) } else { stats.remove(0) };
         writeln!(file, "{stats:#}").with_context(|| format!("cannot write {}", file.path().display()))?;
         file.commit()?;
     }

@@ -102,7 +102,12 @@ fn plate(picture: &Picture, transparent: bool, gamma: Option<f32>) -> Plate<'_> 
 }
 
 /// Writes panels as one PNG with their names, and prints of each what is printed of a film.
-pub fn write(sheet: &Sheet, films: &mut [(Option<String>, Film)], flags: &OutputFlags, mut output: OutputFile) -> anyhow::Result<()> {
+pub fn write(
+    sheet: &Sheet,
+    films: &mut [(Option<String>, Film)],
+    flags: &OutputFlags,
+    mut output: OutputFile,
+) -> anyhow::Result<()> {
     let max = if flags.sixteen_bit() { 65_535 } else { 255 };
     let (mut report, mut texts, mut pictures) = (String::new(), Vec::new(), Vec::new());
     for (label, film) in films.iter_mut() {

@@ -71,7 +71,11 @@ pub const ROWS: &[Row] = &[
             r"\rho = \frac{\rho_d}{\pi} + \rho_s \frac{1}{\sqrt{\cos\theta_i \cos\theta_r}} \frac{\exp\left[-\tan^2\delta \left(\cos^2\phi / \alpha_x^2 + \sin^2\phi / \alpha_y^2\right)\right]}{4\pi \alpha_x \alpha_y}",
         ],
     ),
-    row(11, "Light and eye at infinity", &[r"L,\; V \text{ constant} \;\Rightarrow\; H = \frac{L + V}{\lvert L + V \rvert} \text{ constant}"]),
+    row(
+        11,
+        "Light and eye at infinity",
+        &[r"L,\; V \text{ constant} \;\Rightarrow\; H = \frac{L + V}{\lvert L + V \rvert} \text{ constant}"],
+    ),
     row(
         14,
         "Cook and Torrance's model",
@@ -120,10 +124,7 @@ pub const ROWS: &[Row] = &[
     row(
         22,
         "Transparency without refraction",
-        &[
-            r"I = (1 - k_{t1}) I_1 + k_{t1} I_2",
-            r"I = I_1 + k_{t1} O_{t1} I_2 \quad \text{(filtered)}",
-        ],
+        &[r"I = (1 - k_{t1}) I_1 + k_{t1} I_2", r"I = I_1 + k_{t1} O_{t1} I_2 \quad \text{(filtered)}"],
     ),
     row(
         23,
@@ -135,7 +136,11 @@ pub const ROWS: &[Row] = &[
             r"I = I_0\, e^{-\sigma d}",
         ],
     ),
-    row(24, "Whitted's ray tracing", &[r"I = I_{\mathrm{local}} + k_r I_{\mathrm{mirror}} + k_t I_{\mathrm{refracted}}"]),
+    row(
+        24,
+        "Whitted's ray tracing",
+        &[r"I = I_{\mathrm{local}} + k_r I_{\mathrm{mirror}} + k_t I_{\mathrm{refracted}}"],
+    ),
     row(25, "Global illumination", &[r"L_o = L_e + \int_\Omega \rho\, L_i \cos\theta_i \, d\omega_i"]),
     row(26, "Anti-aliasing", &[r"I(x) = \frac{\sum_i f(x - x_i)\, L(x_i)}{\sum_i f(x - x_i)}"]),
     row(27, "Textures", &[r"O_d = \sum_{i, j} w_i(u)\, w_j(v)\, T_{i j}"]),

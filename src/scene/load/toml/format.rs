@@ -350,7 +350,12 @@ pub static PANEL: Section = Section {
     noun: "[[panel]]",
     keys: &[
         key("label", Kind::Text, "required", "Stands under it; unique"),
-        key("set", Kind::Special("an array of changes such as \"render.ambient=0\""), "none", "What is different here, each as `--set` takes it; the command line's own come after them"),
+        key(
+            "set",
+            Kind::Special("an array of changes such as \"render.ambient=0\""),
+            "none",
+            "What is different here, each as `--set` takes it; the command line's own come after them",
+        ),
     ],
 };
 
