@@ -9,7 +9,6 @@ use crate::film::{Film, FilmError, OutputFile};
 use crate::plot::panels::{self, Picture};
 use crate::scene::Scene;
 use crate::scene::load::Panels;
-use crate::scene::load::toml::nearest;
 use std::io::Write;
 use std::path::Path;
 
@@ -49,7 +48,7 @@ impl<'a> Sheet<'a> {
 
     /// For what one film alone can do.
     pub fn refuse(&self, what: &str) -> Usage {
-        let labels = self.panels.labels().iter().map(|label| format!("{label:?}")).collect::<Vec<_>>().join(", ");
+        let labels = quoted(self.panels.labels());
         Usage(format!("{what}: the scene has panels, each a film of its own; choose one by --panel: {labels}"))
     }
 
@@ -62,14 +61,14 @@ impl<'a> Sheet<'a> {
 /// The panel of this name or number.
 fn find(labels: &[String], name: &str) -> Result<usize, Usage> {
     let index = labels.iter().position(|label| label == name).or_else(|| name.parse().ok());
-    index.filter(|index| *index < labels.len()).ok_or_else(|| {
-        let hint = nearest(name, labels.iter().map(String::as_str));
-        let hint = hint.map_or(String::new(), |label| format!("; did you mean {label:?}?"));
-        match labels.len() {
-            0 => Usage(format!("--panel {name}: the scene has no panels")),
-            count => Usage(format!("--panel {name}: none of this name among {count}, counted from 0{hint}")),
-        }
+    index.filter(|index| *index < labels.len()).ok_or_else(|| match labels.len() {
+        0 => Usage(format!("--panel {name}: the scene has no panels")),
+        _ => Usage(format!("--panel {name}: there are {}", quoted(labels))),
     })
+}
+
+fn quoted(labels: &[String]) -> String {
+    labels.iter().map(|label| format!("{label:?}")).collect::<Vec<_>>().join(", ")
 }
 
 /// A film as a display shows it.

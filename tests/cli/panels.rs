@@ -100,7 +100,7 @@ fn what_one_film_alone_can_do_asks_for_a_panel() {
     }
     folder.cpu(&["render", "panels.toml", "--panel", "red", "--pixel", "1,1"]);
     let message = folder.fails(2, &["render", "panels.toml", "--panel", "rde", "-o", "a.png"]);
-    assert!(message.contains("did you mean \"red\"?"), "{message}");
+    assert!(message.contains("--panel rde: there are \"red\", \"green, wide\", \"1/d²\""), "{message}");
     let message = folder.fails(2, &["render", "scene.toml", "--panel", "red", "-o", "a.png"]);
     assert!(message.contains("the scene has no panels"), "{message}");
     assert_eq!(folder.names(), ["panels.toml", "scene.toml"]);
