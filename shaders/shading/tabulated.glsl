@@ -17,6 +17,8 @@
 
 // Share of samples that are cosine-weighted; the others follow the table.
 const float TABULATED_COSINE = 0.25;
+// 1 - TABULATED_COSINE.
+const float TABULATED_SPECULAR = 0.75;
 // 1 / (1 - TABULATED_COSINE).
 const float TABULATED_REST = 1.33333337;
 // Most angles or azimuths.
@@ -161,7 +163,7 @@ float pdf_tabulated(Material material, vec3 wo, vec3 wi) {
     }
     float high = load_table(t.cosines + cell.row) - load_table(t.cosines + cell.row + 1u);
     float specular = div(max_(chance, 0.0) * float(t.view_azimuths), max_(high, 1.0e-12) * TWO_PI);
-    return TABULATED_COSINE * (wi.z * INV_PI) + (1.0 - TABULATED_COSINE) * specular;
+    return TABULATED_COSINE * (wi.z * INV_PI) + TABULATED_SPECULAR * specular;
 }
 
 // Cosine-weighted, or drawn from the values for light from about `wo`. `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, excluding 1,

@@ -31,10 +31,10 @@ bool is_closer(float t, uint instance, uint primitive, Hit hit) {
         || (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)));
 }
 
-// Index of the highest bit of 1 <= x < 2^24, from the exponent of the float that it makes exactly: devices that are CPUs
-// have no vector instruction for it.
+// Index of the highest bit of 1 <= x < 2^24.
 uint highest_bit(uint x) {
 #ifdef FETCH_TEXEL
+    // The exponent of the float that it makes exactly: CPU devices have no vector instruction for it.
     return (floatBitsToUint(float(int(x))) >> 23u) - 127u;
 #else
     return uint(findMSB(x));
@@ -128,17 +128,19 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
     }
 }
 
-// Tests what instance `id` holds; `hit` becomes the closer of it and what is found.
-void test_instance(Ray ray, uint id, bool any, bool casting, inout Hit hit) {
+// Tests what stands at `place` of the top level's order; `hit` becomes the closer of it and what is found.
+void enter_instance(Ray ray, uint place, bool any, bool casting, inout Hit hit) {
+    uint id = load_top_instance(place);
     Instance record = load_instance(id);
     vec3 origin = object_origin(record, ray.origin);
-    if (!(casting && (record.flags & INSTANCE_NO_SHADOW) != 0u) && within_reach(origin)) {
-        LevelRay level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
-        if (SCENE_HAS_SPHERES && record.kind == KIND_SPHERE) {
-            test_sphere(ray, level, id, hit);
-        } else {
-            walk_mesh(ray, level, id, record.root, any, hit);
-        }
+    if ((casting && (record.flags & INSTANCE_NO_SHADOW) != 0u) || !within_reach(origin)) {
+        return;
+    }
+    LevelRay level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
+    if (SCENE_HAS_SPHERES && record.kind == KIND_SPHERE) {
+        test_sphere(ray, level, id, hit);
+    } else {
+        walk_mesh(ray, level, id, record.root, any, hit);
     }
 }
 
@@ -150,7 +152,7 @@ Hit traverse(Ray ray, bool any, bool casting) {
         return hit;
     }
     if (SCENE_IS_ONE_INSTANCE) {
-        test_instance(ray, 0u, any, casting, hit);
+        enter_instance(ray, 0u, any, casting, hit);
         return hit;
     }
     uvec2 stack[STACK_DEPTH];
@@ -182,7 +184,7 @@ Hit traverse(Ray ray, bool any, bool casting) {
         }
 
         if (instances.y != 0u) {
-            test_instance(ray, load_top_instance(take_primitive(instances)), any, casting, hit);
+            enter_instance(ray, take_primitive(instances), any, casting, hit);
         }
         bool done = instances.y == 0u && group.y <= GROUP_EMPTY && height == 0u;
         if (done || (any && hit.instance != INVALID)) {

@@ -12,6 +12,8 @@
 
 // Indices of rough glass keep this distance from 1, or no facet would refract.
 const float ETA_LEAST = 1.0e-3;
+const float ETA_BELOW = 0.999;
+const float ETA_ABOVE = 1.001;
 
 // Beer coefficient of the medium that a ray with this list is in.
 vec3 medium_absorption(uint list) {
@@ -45,7 +47,7 @@ bool meet_interface(PathState path, Surface surface, inout Material material) {
     if (outer != 0u) {
         float eta = div(material.eta.x, load_table(header.media_table + 4u * (outer - 1u)));
         if (material.model == MODEL_ROUGH_DIELECTRIC && abs(eta - 1.0) < ETA_LEAST) {
-            eta = eta < 1.0 ? 1.0 - ETA_LEAST : 1.0 + ETA_LEAST;
+            eta = eta < 1.0 ? ETA_BELOW : ETA_ABOVE;
         }
         material.eta = vec3(eta);
     }

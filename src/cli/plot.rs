@@ -2,6 +2,7 @@
 
 use super::Usage;
 use super::fit::FitArgs;
+use super::growth::GrowthArgs;
 use super::setup::Size;
 use crate::film::OutputFile;
 use crate::plot::curves::{self, FACETS, Facets, Interface, InterfaceKind};
@@ -95,6 +96,8 @@ enum What {
         #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true, value_parser = stops)]
         exposure: f64,
     },
+    /// Time a ray against the number of triangles, as `gonio bench` measured it.
+    Growth(GrowthArgs),
 }
 
 #[derive(Args)]
@@ -249,6 +252,7 @@ impl What {
             Self::Light { .. } => "light",
             Self::Edge => "edge",
             Self::Tone { .. } => "tone",
+            Self::Growth(_) => "growth",
         }
     }
 
@@ -266,6 +270,7 @@ impl What {
             Self::Light { p, delta } => curves::spot_figure(p, *delta),
             Self::Edge => edge_figure()?,
             Self::Tone { exposure } => curves::tone_figure(*exposure),
+            Self::Growth(args) => args.figure()?,
         };
         Ok((figure, String::new()))
     }

@@ -1,6 +1,6 @@
 //! What render, parity and others share: from flags to a baked scene and a renderer.
 
-use super::{Usage, exact, progress};
+use super::{Usage, exact, progress, team};
 use crate::bake::{SceneData, bake};
 use crate::film::{Film, FilmSpec, Rect};
 use crate::render::cpu::CpuRenderer;
@@ -221,8 +221,9 @@ pub struct BackendFlags {
     #[arg(long, default_value = "auto")]
     pub backend: BackendName,
     /// A Vulkan device: its index or a part of its name as `gonio devices` prints them, or its kind
-    /// (discrete, integrated, virtual, software).
-    #[arg(long, value_name = "INDEX|NAME|KIND")]
+    /// (discrete, integrated, virtual, software); or `cpu`, the CPU backend. `render` takes several at once, as in
+    /// `0,1,cpu`, or `all`.
+    #[arg(long, value_name = "INDEX|NAME|KIND|cpu")]
     pub device: Option<String>,
     /// How kernels read the scene.
     #[arg(long, default_value = "auto")]
@@ -241,6 +242,12 @@ impl BackendFlags {
         let vulkan = || VulkanRenderer::new(data, self.vulkan_options());
         match self.backend {
             BackendName::Cpu => Ok(Box::new(CpuRenderer::new(data, self.threads)?)),
+            BackendName::Auto if self.device.as_deref() == Some(team::CPU) => {
+                Ok(Box::new(CpuRenderer::new(data, self.threads)?))
+            }
+            _ if self.device.as_deref() == Some(team::ALL) => {
+                Err(RenderError::NoDevice("--device all: this command takes one device".to_owned()))
+            }
             BackendName::Vulkan => self.proved(vulkan()?),
             BackendName::Auto if self.device.is_some() => self.proved(vulkan()?),
             BackendName::Auto => match vulkan() {

@@ -18,6 +18,8 @@ use glam::{Vec2, Vec3};
 
 /// Share of samples that are cosine-weighted; the others follow the table.
 pub const TABULATED_COSINE: f32 = 0.25;
+/// 1 - TABULATED_COSINE.
+const TABULATED_SPECULAR: f32 = 0.75;
 /// 1 / (1 - TABULATED_COSINE).
 pub const TABULATED_REST: f32 = 1.33333337;
 /// Most angles or azimuths.
@@ -185,7 +187,7 @@ pub fn pdf_tabulated(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3)
     }
     let high = load_table(scene, t.cosines + cell.row) - load_table(scene, t.cosines + cell.row + 1);
     let specular = div(max_(chance, 0.0) * t.view_azimuths as f32, max_(high, 1.0e-12) * TWO_PI);
-    TABULATED_COSINE * (wi.z * INV_PI) + (1.0 - TABULATED_COSINE) * specular
+    TABULATED_COSINE * (wi.z * INV_PI) + TABULATED_SPECULAR * specular
 }
 
 /// Cosine-weighted, or drawn from the values for light from about `wo`. `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, excluding 1,
