@@ -65,12 +65,23 @@ pub enum Shading {
     Phong,
 }
 
+/// A part of the frame, in pixels from its upper left corner; not empty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    pub x: u32,
+    pub y: u32,
+    pub width: u32,
+    pub height: u32,
+}
+
 /// The image plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
     /// Pixels, 1 to 65,535 each.
     pub width: u32,
     pub height: u32,
+    /// What of the frame is rendered; all of it if not given.
+    pub crop: Option<Window>,
     pub filter: Filter,
     /// e of `unit = 2^e`: the radiance that one film unit stands for.
     pub unit_exponent: i32,

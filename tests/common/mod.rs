@@ -124,6 +124,7 @@ pub fn empty_scene() -> Scene {
         film: Film {
             width: 64,
             height: 32,
+            crop: None,
             filter: Filter::Box { radius: 0.5 },
             unit_exponent: 0,
             tonemap: ToneMap::Clamp,

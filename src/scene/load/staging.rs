@@ -35,6 +35,7 @@ pub fn bare_scene(path: &Path) -> Scene {
         film: Film {
             width: 1280,
             height: 720,
+            crop: None,
             // No negative lobes: sampled ones would be noise at few samples a pixel.
             filter: Filter::Gaussian { radius: 1.5, sigma: 0.5 },
             unit_exponent: 0,

@@ -6,18 +6,31 @@ use super::object::{Child, Object};
 use super::spectrum::Role;
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::intern;
-use crate::scene::{Attenuation, Background, Environment, IntensityUnit, Light, LightKind, Rgb, Wrap};
+use crate::scene::{
+    Attenuation, Background, Channel, Environment, IntensityUnit, Light, LightKind, Material, Parameter, Rgb,
+    TextureBinding, Wrap,
+};
 use glam::{DVec3, Vec3};
 
 impl Loader<'_> {
-    /// The radiance of a shape's emitter.
-    pub fn area_radiance(&self, emitter: Child) -> Result<Rgb> {
+    /// Lets `material` glow as a shape's emitter says.
+    pub fn glow(&mut self, emitter: Child, material: &mut Material) -> Result<()> {
         let object = Object::open(self.document, emitter.node)?;
         if object.plugin.name != "area" {
             let message = format!("a shape has an emitter of type \"area\", found {:?}", object.plugin.name);
             return Err(self.document.bad(emitter.written, message));
         }
-        Ok(object.color("radiance", Role::Emission)?.unwrap_or(Rgb::ONE))
+        material.emission_two_sided = false;
+        material.emission = Rgb::ONE;
+        match object.property("radiance") {
+            Some(node) if self.document.tag(node) == "texture" => {
+                let (texture, parameter) = (self.texture(node)?, Parameter::Emission);
+                material.textures.push(TextureBinding { parameter, texture, channel: Channel::Rgb, scale: 1.0 });
+            }
+            Some(node) => material.emission = super::color::color(self.document, node, Role::Emission)?,
+            None => {}
+        }
+        Ok(())
     }
 
     /// Adds an emitter that stands in the scene itself.

@@ -42,6 +42,8 @@ struct MeshKey {
     turned: bool,
     /// Its vertex colours are shown.
     colored: bool,
+    /// Placed by a transform that mirrors it.
+    mirrored: bool,
 }
 
 /// A scene on its way.

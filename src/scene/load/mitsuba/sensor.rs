@@ -2,7 +2,7 @@
 
 use super::document::{Document, Node, Result};
 use super::object::Object;
-use crate::scene::{Camera, Film, Filter, Projection, RenderSettings, Sampler, Scene};
+use crate::scene::{Camera, Film, Filter, Projection, RenderSettings, Sampler, Scene, Window};
 use glam::DVec3;
 
 /// Scale factors this close to 1 are rounding.
@@ -113,25 +113,38 @@ fn read_film(object: &Object, film: &mut Film) -> Result<()> {
         Some(child) => read_filter(&Object::open(object.document, child.node)?)?,
         None => gaussian(0.5),
     };
-    let whole = [("crop_offset_x", 0), ("crop_offset_y", 0), ("crop_width", film.width), ("crop_height", film.height)];
-    for (name, all) in whole {
-        if object.integer(name, 0, 65_535)?.is_some_and(|found| found != i64::from(all)) {
-            return Err(object.bad(name, "a cropped film is not supported; render with --crop X0,Y0,X1,Y1"));
-        }
-    }
+    film.crop = read_crop(object, film)?;
     Ok(())
+}
+
+/// The part of the film that is rendered, if it says one. As in Mitsuba, width and height are those of the whole film
+/// where they are not written.
+fn read_crop(object: &Object, film: &Film) -> Result<Option<Window>> {
+    let names = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
+    let [x, y, width, height] = [(0, 0), (0, 0), (1, film.width), (1, film.height)];
+    let number = |k: usize, (low, default): (i64, u32)| -> Result<u32> {
+        Ok(object.integer(names[k], low, 65_535)?.unwrap_or(i64::from(default)) as u32)
+    };
+    let crop = Window { x: number(0, x)?, y: number(1, y)?, width: number(2, width)?, height: number(3, height)? };
+    if crop.x + crop.width > film.width || crop.y + crop.height > film.height {
+        let written = names.into_iter().find(|name| object.has(name)).unwrap_or(names[0]);
+        let (w, h) = (film.width, film.height);
+        return Err(object.bad(written, format!("the crop {crop:?} is not inside the film of {w} x {h}")));
+    }
+    Ok(names.iter().any(|name| object.has(name)).then_some(crop))
 }
 
 fn read_filter(object: &Object) -> Result<Filter> {
     let number = |name: &str, default: f64| Ok(object.float_in(name, 1e-3, 100.0)?.unwrap_or(default));
     let weight = |name: &str| Ok(object.float_in(name, -100.0, 100.0)?.unwrap_or(1.0 / 3.0) as f32);
     Ok(match object.plugin.name {
-        "box" => Filter::Box { radius: 0.5 },
+        "box" => Filter::Box { radius: number("radius", 0.5)? as f32 },
         "tent" => Filter::Tent { radius: number("radius", 1.0)? as f32 },
         "gaussian" => gaussian(number("stddev", 0.5)?),
         "mitchell" => Filter::Mitchell { radius: 2.0, b: weight("B")?, c: weight("C")? },
         "catmullrom" => Filter::Mitchell { radius: 2.0, b: 0.0, c: 0.5 },
-        name => return Err(object.document.bad(object.node, format!("the rfilter {name:?} is not supported"))),
+        // lanczos
+        _ => Filter::Lanczos { radius: object.integer("lobes", 1, 16)?.unwrap_or(3) as f32 },
     })
 }
 
