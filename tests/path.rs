@@ -165,6 +165,7 @@ fn lit_floor(light: Option<(Object, Material)>, max_depth: u32) -> Scene {
         target: Vec3::ZERO,
         up: Vec3::Z,
         projection: Projection::Orthographic { height: 2.0 },
+        lens: None,
     };
     scene
 }

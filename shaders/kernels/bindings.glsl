@@ -38,6 +38,7 @@ layout(constant_id = 16) const bool SCENE_HAS_ABSORPTION = true;
 // Objects shaded flat or by Gouraud's method.
 layout(constant_id = 17) const bool SCENE_HAS_FACETS = true;
 layout(constant_id = 18) const bool SCENE_HAS_TEXTURES = true;
+layout(constant_id = 19) const bool SCENE_HAS_LENS = true;
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };

@@ -23,9 +23,9 @@ struct Camera {
     vec3 forward;
     // Height of a pixel, world units: on the plane at distance 1 (perspective), anywhere (orthographic).
     float pixel_size;
-    // Reserved for the thin lens: radius and focal distance.
+    // The thin lens, world units: its radius, 0 for a pinhole, and how far along `forward` it shows things sharp.
     float lens_radius;
-    float focal_distance;
+    float focus_distance;
     uint pad1;
     uint pad2;
 };

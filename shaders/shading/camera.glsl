@@ -28,4 +28,16 @@ CameraRay camera_ray(Camera camera, float film_x, float film_y) {
     return CameraRay(camera.eye + offset, normalize3(camera.forward), camera.pixel_size, 0.0);
 }
 
+// The pinhole's ray `through` a film point, sent through point `p` (in the unit disk) of the thin lens instead: it meets
+// the other in the plane of focus. Source: Cook, Porter and Carpenter 1984, "Distributed Ray Tracing"; Pharr, Jakob and
+// Humphreys 2023, "Physically Based Rendering", section 5.2.3. The cone stays the pinhole's.
+CameraRay through_lens(Camera camera, CameraRay through, vec2 p) {
+    vec3 to_focus = through.direction * div(camera.focus_distance, dot3(through.direction, camera.forward));
+    vec3 right = normalize3(camera.right) * (camera.lens_radius * p.x);
+    vec3 up = normalize3(camera.up) * (camera.lens_radius * p.y);
+    vec3 on_lens = right + up;
+    return CameraRay(
+        through.origin + on_lens, normalize3(to_focus - on_lens), through.cone_width, through.cone_spread);
+}
+
 #endif

@@ -7,6 +7,7 @@
 
 // Dimensions of a sample's random numbers: pairs drawn for the named purpose.
 const uint DIMENSION_FILTER = 0u;
+const uint DIMENSION_LENS = 1u;
 const uint DIMENSION_LIGHT_CHOICE = 16u;
 const uint DIMENSION_LIGHT = 17u;
 const uint DIMENSION_BSDF = 18u;

@@ -371,6 +371,8 @@ fn camera(camera: &scene::Camera, film: &Film) -> Result<Camera, BakeError> {
         scale_y: (2.0 / f64::from(film.height)) as f32,
         forward: unit(forward),
         pixel_size: (2.0 * half_height / f64::from(film.height)) as f32,
+        lens_radius: camera.lens.map_or(0.0, |lens| lens.radius),
+        focus_distance: camera.lens.map_or(0.0, |lens| lens.focus_distance),
         ..Camera::default()
     })
 }

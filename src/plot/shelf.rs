@@ -24,6 +24,7 @@ impl Shelf {
             target: Vec3::ZERO,
             up: Vec3::Y,
             projection: Projection::Orthographic { height: 1.0 },
+            lens: None,
         };
         bare.materials = scene.materials.clone();
         bare.textures = scene.textures.clone();

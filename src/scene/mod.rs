@@ -14,7 +14,7 @@ pub mod table;
 pub mod texture;
 pub mod transform;
 
-pub use camera::{Camera, Projection};
+pub use camera::{Camera, Lens, Projection};
 pub use error::{Location, SceneError};
 pub use light::{Attenuation, IntensityUnit, Light, LightKind};
 pub use material::{

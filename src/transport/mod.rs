@@ -22,6 +22,7 @@ use glam::{Vec3, Vec4};
 
 /// Dimensions of a sample's random numbers: pairs drawn for the named purpose.
 pub const DIMENSION_FILTER: u32 = 0;
+pub const DIMENSION_LENS: u32 = 1;
 pub const DIMENSION_LIGHT_CHOICE: u32 = 16;
 pub const DIMENSION_LIGHT: u32 = 17;
 pub const DIMENSION_BSDF: u32 = 18;

@@ -148,6 +148,7 @@ pub fn empty_scene() -> Scene {
             target: Vec3::ZERO,
             up: Vec3::Y,
             projection: Projection::Perspective { fov_y: 1.0 },
+            lens: None,
         },
         background: Background::BLACK,
         ambient: Vec3::ZERO,

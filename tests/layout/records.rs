@@ -110,7 +110,7 @@ records! {
     }
     ShadowRay { ray, contribution, slot, dither, _pad0, _pad1 }
     Camera {
-        eye, kind, right, scale_x, up, scale_y, forward, pixel_size, lens_radius, focal_distance, _pad1, _pad2,
+        eye, kind, right, scale_x, up, scale_y, forward, pixel_size, lens_radius, focus_distance, _pad1, _pad2,
     }
     SceneHeader {
         camera, ambient, integrator, background_bottom, max_depth, background_top, min_weight, seed, sampling,

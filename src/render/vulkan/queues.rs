@@ -49,7 +49,7 @@ const NAMES: Stages<&str> = Stages {
 };
 
 /// Specialisation constants that say what the scene uses (`shaders/kernels/bindings.glsl`).
-fn scene_constants(data: &SceneData) -> [(u32, u32); 14] {
+fn scene_constants(data: &SceneData) -> [(u32, u32); 15] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
     let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
     let textures = data.materials.iter().any(|material| material.texture_count > 0);
@@ -70,6 +70,7 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 14] {
         (16, u32::from(data.materials.iter().any(|material| material.absorption != Vec3::ZERO))),
         (17, u32::from(facets)),
         (18, u32::from(textures)),
+        (19, u32::from(data.header.camera.lens_radius > 0.0)),
     ]
 }
 

@@ -14,8 +14,13 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 /// Stands for "no camera given": `eye` and `target` of a real camera differ.
-const NO_CAMERA: Camera =
-    Camera { eye: Vec3::ZERO, target: Vec3::ZERO, up: Vec3::Y, projection: Projection::Perspective { fov_y: FOV_Y } };
+const NO_CAMERA: Camera = Camera {
+    eye: Vec3::ZERO,
+    target: Vec3::ZERO,
+    up: Vec3::Y,
+    projection: Projection::Perspective { fov_y: FOV_Y },
+    lens: None,
+};
 
 /// 30 degrees: little perspective, as in a photograph of a product.
 const FOV_Y: f32 = std::f32::consts::FRAC_PI_6;
@@ -141,7 +146,13 @@ fn frame(back: DVec3) -> (DVec3, DVec3) {
 }
 
 fn camera(eye: DVec3, target: DVec3, fov_y: f32) -> Camera {
-    Camera { eye: eye.as_vec3(), target: target.as_vec3(), up: Vec3::Y, projection: Projection::Perspective { fov_y } }
+    Camera {
+        eye: eye.as_vec3(),
+        target: target.as_vec3(),
+        up: Vec3::Y,
+        projection: Projection::Perspective { fov_y },
+        lens: None,
+    }
 }
 
 /// From where the view across the room's middle is longest, or, if a side is missing, through it from outside.

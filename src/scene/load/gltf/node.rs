@@ -255,6 +255,7 @@ impl Loader<'_> {
             target: (eye + forward / forward.length() * reach).as_vec3(),
             up: (up / up.length()).as_vec3(),
             projection,
+            lens: None,
         };
         self.has_camera = true;
         Ok(())

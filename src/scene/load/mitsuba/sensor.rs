@@ -68,6 +68,7 @@ fn read_camera(object: &Object, film: &Film) -> Result<Camera> {
         target: (eye + forward / length(forward)).as_vec3(),
         up: (up / length(up)).as_vec3(),
         projection,
+        lens: None,
     })
 }
 

@@ -160,6 +160,18 @@ pub static CAMERA: Section = Section {
         .only(&["perspective"]),
         key("height", Kind::Number(Range::POSITIVE), "required", "Height of the view, scene units")
             .only(&["orthographic"]),
+        key(
+            "lens_radius",
+            Kind::Number(Range::NOT_NEGATIVE),
+            "0",
+            "Radius of a thin lens, scene units: what is nearer or farther than `focus_distance` blurs, a point at distance z to a disk of `lens_radius` |1 - z / `focus_distance`| there. 0: a pinhole, all is sharp",
+        ),
+        key(
+            "focus_distance",
+            Kind::Number(Range::POSITIVE),
+            "the distance to `target`",
+            "From the lens along the view to the plane that is sharp, scene units",
+        ),
     ],
 };
 

@@ -7,8 +7,8 @@ use super::place::read_rotation;
 use super::reader::{Reader, Result, in_range};
 use super::texture::Textures;
 use crate::scene::{
-    Background, Camera, Environment, Film, Filter, Integrator, IntensityUnit, Projection, RenderSettings, Sampler,
-    Shading, ToneMap,
+    Background, Camera, Environment, Film, Filter, Integrator, IntensityUnit, Lens, Projection, RenderSettings,
+    Sampler, Shading, ToneMap,
 };
 use glam::Vec3;
 
@@ -127,14 +127,30 @@ pub fn read_camera(root: &Reader, film: &Film, base: Option<Camera>) -> Result<O
         Some(base) => table.vector("eye")?.unwrap_or(base.eye),
         None => table.required("eye", table.vector("eye")?)?,
     };
+    let target = table.vector("target")?.unwrap_or(base.map_or(Vec3::ZERO, |base| base.target));
     let camera = Camera {
         eye,
-        target: table.vector("target")?.unwrap_or(base.map_or(Vec3::ZERO, |base| base.target)),
+        target,
         up: table.vector("up")?.unwrap_or(base.map_or(Vec3::Y, |base| base.up)),
         projection: read_projection(&table, film, base.map(|base| base.projection))?,
+        lens: None,
     };
     check_view(&table, &camera)?;
-    Ok(Some(camera))
+    let sharp = base.and_then(|base| base.lens);
+    Ok(Some(Camera { lens: read_lens(&table, camera.eye.as_dvec3().distance(target.as_dvec3()), sharp)?, ..camera }))
+}
+
+/// The lens, in focus at the target, which is `distance` away, unless it says otherwise.
+fn read_lens(table: &Reader, distance: f64, base: Option<Lens>) -> Result<Option<Lens>> {
+    let radius = table.float("lens_radius")?.or(base.map(|base| base.radius)).filter(|radius| *radius > 0.0);
+    let focus_distance = table.float("focus_distance")?.or(base.map(|base| base.focus_distance));
+    match radius {
+        Some(radius) => Ok(Some(Lens { radius, focus_distance: focus_distance.unwrap_or(distance as f32) })),
+        None if table.has("focus_distance") => {
+            Err(table.bad("focus_distance", "\"focus_distance\" has no meaning without a \"lens_radius\" above 0"))
+        }
+        None => Ok(None),
+    }
 }
 
 fn read_projection(table: &Reader, film: &Film, base: Option<Projection>) -> Result<Projection> {
