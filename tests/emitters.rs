@@ -194,6 +194,7 @@ fn crowd() -> SceneData {
         unit: IntensityUnit::Radiometric,
         attenuation: Attenuation::InverseSquare,
         casts_shadow: true,
+        slide: None,
     };
     scene.lights = vec![
         light(LightKind::Point { position: Vec3::Y }),

@@ -6,7 +6,7 @@ mod common;
 mod scenes;
 
 use common::{empty_scene, globe, object};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use gonio::bake::{SceneData, bake};
 use gonio::scene::*;
 use scenes::render_cpu;
@@ -166,6 +166,8 @@ fn lit_floor(light: Option<(Object, Material)>, max_depth: u32) -> Scene {
         up: Vec3::Z,
         projection: Projection::Orthographic { height: 2.0 },
         lens: None,
+        shift: Vec2::ZERO,
+        mirrored: false,
     };
     scene
 }
@@ -211,6 +213,7 @@ fn lamp(kind: LightKind, intensity: f32) -> Light {
         unit: IntensityUnit::Radiometric,
         attenuation: Attenuation::InverseSquare,
         casts_shadow: true,
+        slide: None,
     }
 }
 

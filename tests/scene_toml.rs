@@ -139,6 +139,7 @@ fn render_film_and_background_keys_arrive() {
     let film = Film {
         width: 3,
         height: 2,
+        crop: None,
         filter: Filter::Gaussian { radius: 2.5, sigma: 0.5 },
         unit_exponent: -2,
         tonemap: ToneMap::Reinhard,

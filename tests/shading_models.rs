@@ -37,6 +37,7 @@ fn coarse(shading: Shading, model: Model) -> Scene {
         unit: IntensityUnit::Lecture,
         attenuation: Attenuation::None,
         casts_shadow: true,
+        slide: None,
     });
     scene
 }

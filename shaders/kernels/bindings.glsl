@@ -39,6 +39,8 @@ layout(constant_id = 16) const bool SCENE_HAS_ABSORPTION = true;
 layout(constant_id = 17) const bool SCENE_HAS_FACETS = true;
 layout(constant_id = 18) const bool SCENE_HAS_TEXTURES = true;
 layout(constant_id = 19) const bool SCENE_HAS_LENS = true;
+// Spots with a picture or a linear ramp.
+layout(constant_id = 20) const bool SCENE_HAS_SLIDES = true;
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };

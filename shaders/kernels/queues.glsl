@@ -31,7 +31,7 @@ void push_shadow(ShadowRay shadow) {
     shadows[at] = shadow;
 }
 
-// Notes that a contribution was limited.
+// Notes that a contribution which reaches the film was limited.
 void count_limited() {
     atomicAdd(control.limited_count, 1u);
 }

@@ -12,6 +12,9 @@ const uint ATTENUATION_INVERSE_SQUARE = 0u;
 const uint ATTENUATION_POLYNOMIAL = 1u;
 const uint ATTENUATION_NONE = 2u;
 
+// Entries of the table array that describe a slide.
+const uint SLIDE_ENTRIES = 10u;
+
 // One light. 80 bytes.
 struct Light {
     vec3 position;
@@ -33,8 +36,9 @@ struct Light {
     float exponent;
     // 1 if the light casts shadows.
     uint casts_shadow;
-    uint pad0;
-    uint pad1;
+    // 1 if something stands in a spot's beam (`shading/slide`); `table` is then the first of its `SLIDE_ENTRIES`.
+    uint slide;
+    uint table;
 };
 const uint LIGHT_WORDS = 5u;
 
@@ -57,8 +61,8 @@ Light load_light(uint index) {
     uvec4 w4 = fetch_data(at + 4u);
     r.exponent = uintBitsToFloat(w4.x);
     r.casts_shadow = w4.y;
-    r.pad0 = w4.z;
-    r.pad1 = w4.w;
+    r.slide = w4.z;
+    r.table = w4.w;
     return r;
 }
 #endif

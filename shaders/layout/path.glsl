@@ -126,7 +126,8 @@ struct ShadowRay {
     uint slot;
     // Hash that dithers the conversion to fixed point (`film` in transport).
     uint dither;
-    uint pad0;
+    // 1 if the scene's `clamp` has limited the contribution.
+    uint limited;
     uint pad1;
 };
 const uint SHADOW_RAY_WORDS = 5u;
@@ -151,7 +152,7 @@ ShadowRay load_shadow_ray(uint index) {
     uvec4 w4 = fetch_shadow(at + 4u);
     r.slot = w4.x;
     r.dither = w4.y;
-    r.pad0 = w4.z;
+    r.limited = w4.z;
     r.pad1 = w4.w;
     return r;
 }

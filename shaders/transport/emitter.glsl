@@ -7,6 +7,7 @@
 #include "shading/light.glsl"
 #include "shading/material.glsl"
 #include "shading/math.glsl"
+#include "shading/slide.glsl"
 #include "shading/spectrum.glsl"
 #include "shading/warp.glsl"
 #include "trace/ray.glsl"
@@ -45,7 +46,9 @@ LightSample sample_emitter(Emitter emitter, SampleKey key, Surface surface, vec2
         return LightSample(seen.wi, T_INFINITE, radiance, pdf);
     }
     if (HAS_EMITTER(EMITTER_LIGHT) && emitter.kind == EMITTER_LIGHT) {
-        LightSample lit = sample_light(load_light(emitter.instance), position);
+        Light light = load_light(emitter.instance);
+        LightSample lit = sample_light(light, position);
+        if (SCENE_HAS_SLIDES && light.slide != 0u) lit.radiance *= slide_factor(light, lit.wi);
         lit.radiance *= rcp(emitter.density);
         return lit;
     }

@@ -23,14 +23,22 @@
 #include "transport/mod.glsl"
 #include "transport/weight.glsl"
 
-// A contribution of light that has been scattered, within the scene's limit; how often that bites is counted.
-Spectrum limited(uint depth, Spectrum value) {
+// Factor that keeps a contribution of light that has been scattered within the scene's limit; below 1 where that bites.
+float limit(uint depth, Spectrum value) {
     float largest = spectrum_max(value);
     if (header.clamp <= 0.0 || depth == 0u || largest <= header.clamp) {
-        return value;
+        return 1.0;
     }
-    count_limited();
-    return value * div(header.clamp, largest);
+    return div(header.clamp, largest);
+}
+
+// Adds light that a path has met, within the scene's limit; how often that bites is counted.
+// `coverage`: what it adds to alpha.
+void add_limited(PathState path, Spectrum value, float coverage, uint dither) {
+    float factor = limit(path.depth, value);
+    if (factor < 1.0) count_limited();
+    Spectrum seen = value * factor;
+    add_contribution(header.film_scale, path.slot, vec4(seen.x, seen.y, seen.z, coverage), dither);
 }
 
 // Adds what a ray that leaves the scene sees.
@@ -44,9 +52,8 @@ void shade_escape(PathState path, SampleKey key) {
         float sampled = header.environment_density * pdf_environment(path.ray.direction);
         weight = power_heuristic(path.pdf, sampled);
     }
-    Spectrum seen = limited(path.depth, path.throughput * (radiance * weight));
-    vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
-    add_contribution(header.film_scale, path.slot, contribution, dither_hash(key, DITHER_BACKGROUND));
+    Spectrum seen = path.throughput * (radiance * weight);
+    add_limited(path, seen, 0.0, dither_hash(key, DITHER_BACKGROUND));
 }
 
 // Light of one emitter, chosen at random, that the surface sends on towards `wo`; its shadow ray is appended.
@@ -74,13 +81,16 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
     if (lit.pdf_solid_angle > 0.0) {
         weight = power_heuristic(lit.pdf_solid_angle, pdf_material(material, wo_local, wi_local));
     }
-    Spectrum seen = limited(path.depth + 1u, reflected * weight);
+    float factor = limit(path.depth + 1u, reflected * weight);
+    Spectrum seen = (reflected * weight) * factor;
+    uint limited = factor < 1.0 ? 1u : 0u;
     vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
     uint dither = dither_hash(key, DITHER_LIGHT);
     if (casts_shadow(emitter)) {
         Ray ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
-        push_shadow(ShadowRay(ray, contribution, path.slot, dither, 0u, 0u));
+        push_shadow(ShadowRay(ray, contribution, path.slot, dither, limited, 0u));
     } else {
+        if (limited != 0u) count_limited();
         add_contribution(header.film_scale, path.slot, contribution, dither);
     }
 }
@@ -158,9 +168,8 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Mat
             float sampled = pdf_emitter(path.ray.origin, direction, hit.t, surface);
             weight = power_heuristic(path.pdf, sampled);
         }
-        Spectrum seen = limited(path.depth, path.throughput * (own_light * weight));
-        vec4 contribution = vec4(seen.x, seen.y, seen.z, path.coverage);
-        add_contribution(header.film_scale, path.slot, contribution, dither_hash(key, DITHER_SURFACE));
+        Spectrum seen = path.throughput * (own_light * weight);
+        add_limited(path, seen, path.coverage, dither_hash(key, DITHER_SURFACE));
     }
     if (path.depth >= header.max_depth || is_hidden_back(surface, material, wo)) {
         return;

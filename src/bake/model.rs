@@ -36,13 +36,14 @@ pub fn bake_material(
         table: INVALID,
         ..Material::default()
     };
-    if !material.two_sided {
-        baked.flags |= MATERIAL_ONE_SIDED;
-    }
     if !material.emission_two_sided {
         baked.flags |= MATERIAL_EMIT_ONE_SIDED;
     }
     bake_model(material, measured, traced, &mut baked, tables)?;
+    // The far side of what transmits is no back.
+    if !material.two_sided && baked.flags & MATERIAL_TRANSMISSIVE == 0 {
+        baked.flags |= MATERIAL_ONE_SIDED;
+    }
     match material.transparency {
         None if matches!(material.model, Model::Null) => baked.k_t = 1.0,
         // What does not cover lets everything through (`path` draws it at random, the others as a branch).

@@ -34,7 +34,7 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     bake_textures(&scene.textures, &mut data);
     check_count("words of texels", data.texels.len())?;
     let default_material = bake_materials(scene, &mut data)?;
-    data.lights = scene.lights.iter().map(bake_light).collect();
+    data.lights = scene.lights.iter().map(|light| bake_light(light, &mut data.tables)).collect();
     data.times.materials_s = start.elapsed().as_secs_f64();
     let meshes = bake_meshes(scene, default_material);
     for mesh in meshes.iter().flatten() {
@@ -357,6 +357,7 @@ fn camera(camera: &scene::Camera, film: &Film) -> Result<Camera, BakeError> {
     let right =
         normalise(cross(forward, camera.up.as_dvec3())).ok_or(BakeError::Camera("looks along its up vector"))?;
     let up = cross(right, forward);
+    let right = if camera.mirrored { -right } else { right };
     let (kind, half_height) = match camera.projection {
         Projection::Perspective { fov_y } => (crate::layout::CAMERA_PERSPECTIVE, libm::tan(f64::from(fov_y) * 0.5)),
         Projection::Orthographic { height } => (crate::layout::CAMERA_ORTHOGRAPHIC, f64::from(height) * 0.5),
@@ -373,6 +374,7 @@ fn camera(camera: &scene::Camera, film: &Film) -> Result<Camera, BakeError> {
         pixel_size: (2.0 * half_height / f64::from(film.height)) as f32,
         lens_radius: camera.lens.map_or(0.0, |lens| lens.radius),
         focus_distance: camera.lens.map_or(0.0, |lens| lens.focus_distance),
-        ..Camera::default()
+        shift_x: 2.0 * camera.shift.x,
+        shift_y: 2.0 * camera.shift.y,
     })
 }

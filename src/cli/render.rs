@@ -240,6 +240,7 @@ fn stats_json(
         "interrupted": outcome.interrupted.is_some(),
         "nan_count": film.nan_count(),
         "clamped_count": film.clamped_count(),
+        "limited_count": film.limited_count(),
         "render_s": seconds,
         "bake_s": bake_time.as_secs_f64(),
         "rays_per_s": rays as f64 / seconds.max(1e-9),

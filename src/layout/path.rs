@@ -81,6 +81,7 @@ pub struct ShadowRay {
     pub slot: u32,
     /// Hash that dithers the conversion to fixed point (`film` in transport).
     pub dither: u32,
-    pub _pad0: u32,
+    /// 1 if the scene's `clamp` has limited the contribution.
+    pub limited: u32,
     pub _pad1: u32,
 }

@@ -16,7 +16,7 @@ pub mod transform;
 
 pub use camera::{Camera, Lens, Projection};
 pub use error::{Location, SceneError};
-pub use light::{Attenuation, IntensityUnit, Light, LightKind};
+pub use light::{Attenuation, IntensityUnit, Light, LightKind, Slide};
 pub use material::{
     Channel, Distribution, Fresnel, Lobe, Masking, Material, Model, Parameter, Principled, TextureBinding,
     Transparency, WardNormalisation,

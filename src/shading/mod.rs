@@ -49,6 +49,7 @@ pub mod principled;
 pub mod rough_conductor;
 pub mod rough_dielectric;
 pub mod sampling;
+pub mod slide;
 pub mod spectrum;
 pub mod texture;
 pub mod ward;

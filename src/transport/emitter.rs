@@ -13,6 +13,7 @@ use crate::shading::light::{LightSample, no_light, sample_light};
 use crate::shading::material::{emission_material, own_weight};
 use crate::shading::math::{dot3, rcp};
 use crate::shading::sampling::SampleKey;
+use crate::shading::slide::slide_factor;
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_luminance};
 use crate::shading::warp::square_to_uniform_triangle;
 use crate::trace::ray::{transform_point, transform_vector};
@@ -65,7 +66,11 @@ pub fn sample_emitter(scene: &SceneView, emitter: &Emitter, key: SampleKey, surf
         return LightSample { wi: seen.wi, distance: T_INFINITE, radiance, pdf_solid_angle: pdf };
     }
     if emitter.kind == EMITTER_LIGHT {
-        let mut lit = sample_light(&load_light(scene, emitter.instance), position);
+        let light = load_light(scene, emitter.instance);
+        let mut lit = sample_light(&light, position);
+        if light.slide != 0 {
+            lit.radiance *= slide_factor(scene, &light, lit.wi);
+        }
         lit.radiance *= rcp(emitter.density);
         return lit;
     }

@@ -68,7 +68,7 @@ pub fn push_shadow(queues: &mut Queues, shadow: ShadowRay) {
     queues.shadows.push(shadow);
 }
 
-/// Notes that a contribution was limited.
+/// Notes that a contribution which reaches the film was limited.
 pub fn count_limited(queues: &mut Queues) {
     queues.limited_count += 1;
 }

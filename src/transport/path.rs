@@ -30,14 +30,25 @@ use crate::trace::spawn::{spawn_ray, spawn_through};
 use crate::trace::surface::Surface;
 use glam::{Vec2, Vec3, Vec4};
 
-/// A contribution of light that has been scattered, within the scene's limit; how often that bites is counted.
-pub fn limited(scene: &SceneView, depth: u32, value: Spectrum, queues: &mut Queues) -> Spectrum {
+/// Factor that keeps a contribution of light that has been scattered within the scene's limit; below 1 where that bites.
+pub fn limit(scene: &SceneView, depth: u32, value: Spectrum) -> f32 {
     let largest = spectrum_max(value);
     if scene.header.clamp <= 0.0 || depth == 0 || largest <= scene.header.clamp {
-        return value;
+        return 1.0;
     }
-    count_limited(queues);
-    value * div(scene.header.clamp, largest)
+    div(scene.header.clamp, largest)
+}
+
+/// Adds light that a path has met, within the scene's limit; how often that bites is counted.
+/// `coverage`: what it adds to alpha.
+fn add_limited(scene: &SceneView, path: &PathState, value: Spectrum, coverage: f32, dither: u32, queues: &mut Queues) {
+    let factor = limit(scene, path.depth, value);
+    if factor < 1.0 {
+        count_limited(queues);
+    }
+    let seen = value * factor;
+    let contribution = Vec4::new(seen.x, seen.y, seen.z, coverage);
+    add_contribution(queues, scene.header.film_scale, path.slot, contribution, dither);
 }
 
 /// Adds what a ray that leaves the scene sees.
@@ -51,9 +62,8 @@ pub fn shade_escape(scene: &SceneView, path: &PathState, key: SampleKey, queues:
         let sampled = scene.header.environment_density * pdf_environment(scene, path.ray.direction);
         weight = power_heuristic(path.pdf, sampled);
     }
-    let seen = limited(scene, path.depth, path.throughput * (radiance * weight), queues);
-    let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
-    add_contribution(queues, scene.header.film_scale, path.slot, contribution, dither_hash(key, DITHER_BACKGROUND));
+    let seen = path.throughput * (radiance * weight);
+    add_limited(scene, path, seen, 0.0, dither_hash(key, DITHER_BACKGROUND), queues);
 }
 
 /// Light of one emitter, chosen at random, that the surface sends on towards `wo`; its shadow ray is appended.
@@ -91,13 +101,18 @@ fn shade_emitter(
     if lit.pdf_solid_angle > 0.0 {
         weight = power_heuristic(lit.pdf_solid_angle, pdf_material(scene, material, wo_local, wi_local));
     }
-    let seen = limited(scene, path.depth + 1, reflected * weight, queues);
+    let factor = limit(scene, path.depth + 1, reflected * weight);
+    let seen = (reflected * weight) * factor;
+    let limited = if factor < 1.0 { 1 } else { 0 };
     let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
     let dither = dither_hash(key, DITHER_LIGHT);
     if casts_shadow(scene, &emitter) {
         let ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
-        push_shadow(queues, ShadowRay { ray, contribution, slot: path.slot, dither, _pad0: 0, _pad1: 0 });
+        push_shadow(queues, ShadowRay { ray, contribution, slot: path.slot, dither, limited, _pad1: 0 });
     } else {
+        if limited != 0 {
+            count_limited(queues);
+        }
         add_contribution(queues, scene.header.film_scale, path.slot, contribution, dither);
     }
 }
@@ -193,9 +208,8 @@ pub fn shade_path(
             let sampled = pdf_emitter(scene, path.ray.origin, direction, hit.t, surface);
             weight = power_heuristic(path.pdf, sampled);
         }
-        let seen = limited(scene, path.depth, path.throughput * (own_light * weight), queues);
-        let contribution = Vec4::new(seen.x, seen.y, seen.z, path.coverage);
-        add_contribution(queues, scene.header.film_scale, path.slot, contribution, dither_hash(key, DITHER_SURFACE));
+        let seen = path.throughput * (own_light * weight);
+        add_limited(scene, &path, seen, path.coverage, dither_hash(key, DITHER_SURFACE), queues);
     }
     if path.depth >= scene.header.max_depth || is_hidden_back(surface, material, wo) {
         return;

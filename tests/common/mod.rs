@@ -1,7 +1,7 @@
 //! Scenes and rays for the tests of trace and bake.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use gonio::layout::{INVALID, Ray, T_INFINITE};
 use gonio::scene::*;
 
@@ -149,6 +149,8 @@ pub fn empty_scene() -> Scene {
             up: Vec3::Y,
             projection: Projection::Perspective { fov_y: 1.0 },
             lens: None,
+            shift: Vec2::ZERO,
+            mirrored: false,
         },
         background: Background::BLACK,
         ambient: Vec3::ZERO,

@@ -97,8 +97,8 @@ records! {
         transmit_color, first_texture, absorption, table, emission, texture_count, m0_v, m1_v, exponent_v, extra,
     }
     Light {
-        position, kind, direction, attenuation, intensity, cos_outer, c, cos_inner, exponent, casts_shadow, _pad0,
-        _pad1,
+        position, kind, direction, attenuation, intensity, cos_outer, c, cos_inner, exponent, casts_shadow, slide,
+        table,
     }
     Texture {
         width, height, first_word, format, wrap_u, wrap_v, magnify, level_count, scale_u, scale_v, offset_u, offset_v,
@@ -108,9 +108,9 @@ records! {
     PathState {
         ray, throughput, slot, pixel, sample_index, path_id, depth, coverage, eta, pdf, absorption, _pad1,
     }
-    ShadowRay { ray, contribution, slot, dither, _pad0, _pad1 }
+    ShadowRay { ray, contribution, slot, dither, limited, _pad1 }
     Camera {
-        eye, kind, right, scale_x, up, scale_y, forward, pixel_size, lens_radius, focus_distance, _pad1, _pad2,
+        eye, kind, right, scale_x, up, scale_y, forward, pixel_size, lens_radius, focus_distance, shift_x, shift_y,
     }
     SceneHeader {
         camera, ambient, integrator, background_bottom, max_depth, background_top, min_weight, seed, sampling,
@@ -173,7 +173,7 @@ constants! {
     INTEGRATOR_LOCAL INTEGRATOR_WHITTED INTEGRATOR_PATH
     SAMPLER_SOBOL SAMPLER_STRATIFIED SAMPLER_INDEPENDENT
     FILTER_BOX FILTER_TENT FILTER_TABLE FILTER_KNOTS
-    LIGHT_POINT LIGHT_DIRECTIONAL LIGHT_SPOT
+    LIGHT_POINT LIGHT_DIRECTIONAL LIGHT_SPOT SLIDE_ENTRIES
     ATTENUATION_INVERSE_SQUARE ATTENUATION_POLYNOMIAL ATTENUATION_NONE
     MODEL_LAMBERT MODEL_PHONG MODEL_BLINN_PHONG MODEL_COOK_TORRANCE MODEL_MIRROR MODEL_DIELECTRIC MODEL_EMISSIVE
     MODEL_OREN_NAYAR MODEL_WARD MODEL_ASHIKHMIN_SHIRLEY MODEL_KELEMEN MODEL_CONDUCTOR MODEL_ROUGH_CONDUCTOR MODEL_ROUGH_DIELECTRIC MODEL_THIN_DIELECTRIC MODEL_PLASTIC MODEL_ROUGH_PLASTIC MODEL_PRINCIPLED MODEL_MEASURED MODEL_NULL MODEL_BLEND

@@ -194,6 +194,7 @@ void store_constants() {
     constants[117] = CHANNEL_A;
     constants[118] = CHANNEL_RGB;
     constants[119] = TEXTURES_MOST;
+    constants[120] = SLIDE_ENTRIES;
 }
 
 void main() {

@@ -8,7 +8,7 @@ use crate::trace::traverse::{trace_any, trace_closest};
 use crate::transport::film::{add_fixed, clamp_sample};
 use crate::transport::generate::generate;
 use crate::transport::shade::shade;
-use crate::transport::{Queues, add_contribution};
+use crate::transport::{Queues, add_contribution, count_limited};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -91,6 +91,9 @@ fn run_sample(scene: &SceneView, batch: &Batch, slot: u32, worker: &mut Worker, 
             worker.shadow_rays += 1;
             if !trace_any(scene, &shadow.ray) {
                 let scale = scene.header.film_scale;
+                if shadow.limited != 0 {
+                    count_limited(&mut worker.queues);
+                }
                 add_contribution(&mut worker.queues, scale, shadow.slot, shadow.contribution, shadow.dither);
             }
         }
@@ -171,10 +174,12 @@ impl Renderer for CpuRenderer<'_> {
             film.add_aovs(job.crop, &aovs, job.samples.contains(&0));
         }
         film.record(job.samples.clone(), tally.nan_count.into_inner(), tally.clamped_count.into_inner());
+        let limited = tally.limited_count.into_inner();
+        film.count_limited(limited);
         Ok(Counters {
             closest_rays: tally.closest_rays.into_inner(),
             shadow_rays: tally.shadow_rays.into_inner(),
-            limited: tally.limited_count.into_inner(),
+            limited,
             ..Counters::default()
         })
     }

@@ -49,7 +49,7 @@ const NAMES: Stages<&str> = Stages {
 };
 
 /// Specialisation constants that say what the scene uses (`shaders/kernels/bindings.glsl`).
-fn scene_constants(data: &SceneData) -> [(u32, u32); 15] {
+fn scene_constants(data: &SceneData) -> [(u32, u32); 16] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
     let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
     let textures = data.materials.iter().any(|material| material.texture_count > 0);
@@ -71,6 +71,7 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 15] {
         (17, u32::from(facets)),
         (18, u32::from(textures)),
         (19, u32::from(data.header.camera.lens_radius > 0.0)),
+        (20, u32::from(data.lights.iter().any(|light| light.slide != 0))),
     ]
 }
 

@@ -9,7 +9,7 @@ use crate::scene::{
     Attenuation, Background, Camera, Film, Filter, Geometry, Integrator, IntensityUnit, Light, LightKind, Material,
     MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, Shading, ToneMap, Transform, shape,
 };
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -20,6 +20,8 @@ const NO_CAMERA: Camera = Camera {
     up: Vec3::Y,
     projection: Projection::Perspective { fov_y: FOV_Y },
     lens: None,
+    shift: Vec2::ZERO,
+    mirrored: false,
 };
 
 /// 30 degrees: little perspective, as in a photograph of a product.
@@ -152,6 +154,8 @@ fn camera(eye: DVec3, target: DVec3, fov_y: f32) -> Camera {
         up: Vec3::Y,
         projection: Projection::Perspective { fov_y },
         lens: None,
+        shift: Vec2::ZERO,
+        mirrored: false,
     }
 }
 
@@ -183,6 +187,7 @@ fn light(name: &str, kind: LightKind, irradiance: f32, attenuation: Attenuation,
         unit: IntensityUnit::Radiometric,
         attenuation,
         casts_shadow,
+        slide: None,
     }
 }
 

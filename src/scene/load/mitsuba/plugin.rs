@@ -120,8 +120,11 @@ const FOV: &[Property] = &[
     p("fov", Float, ""),
     p("fov_axis", Text, "x"),
     p("focal_length", Text, "50mm"),
+];
+const PRINCIPAL_POINT: &[Property] = &[
     p("principal_point_offset_x", Float, "0"),
     p("principal_point_offset_y", Float, "0"),
+    ignored("focus_distance", Float),
 ];
 const SENSOR_PARTS: &[&str] = &["film", "sampler"];
 
@@ -208,9 +211,16 @@ pub const PLUGINS: &[Plugin] = &[
                 p("intensity", Color, "1"),
                 p("cutoff_angle", Float, "20"),
                 p("beam_width", Float, "3/4 of cutoff_angle"),
+                p("texture", Texture, "none"),
             ],
             TO_WORLD,
         ],
+        &[],
+    ),
+    plugin(
+        "emitter",
+        "projector",
+        &[&[p("irradiance", Texture, ""), p("scale", Float, "1")], FOV, TO_WORLD],
         &[],
     ),
     plugin("emitter", "directional", &[&[p("direction", Vector, ""), p("irradiance", Color, "1")], TO_WORLD], &[]),
@@ -221,11 +231,11 @@ pub const PLUGINS: &[Plugin] = &[
         &[&[p("filename", Text, ""), p("scale", Float, "1"), ignored("mis_compensation", Boolean)], TO_WORLD],
         &[],
     ),
-    plugin("sensor", "perspective", &[FOV, &[ignored("focus_distance", Float)], SENSOR], SENSOR_PARTS),
+    plugin("sensor", "perspective", &[FOV, PRINCIPAL_POINT, SENSOR], SENSOR_PARTS),
     plugin(
         "sensor",
         "thinlens",
-        &[FOV, &[p("aperture_radius", Float, ""), p("focus_distance", Float, "0")], SENSOR],
+        &[FOV, &[p("aperture_radius", Float, ""), p("focus_distance", Float, "far_clip, 10000")], SENSOR],
         SENSOR_PARTS,
     ),
     plugin("sensor", "orthographic", &[SENSOR], SENSOR_PARTS),

@@ -47,6 +47,7 @@ fn read_light(table: &Reader, settings: &LightSettings, warnings: &mut Vec<Strin
         unit: settings.unit,
         attenuation: read_attenuation(table, settings.unit)?,
         casts_shadow: table.boolean("casts_shadow")?.unwrap_or(true),
+        slide: None,
     })
 }
 
