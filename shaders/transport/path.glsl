@@ -133,8 +133,8 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
 }
 
 // Shades one hit: adds what glows, samples an emitter, and lets the path go on.
-// `key`: of the path.
-void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Material material) {
+// `key`: of the path. `named`: the surface's material, of which `material` is what is met here.
+void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uint named, Material material) {
     PathState path = incoming;
     vec3 direction = path.ray.direction;
     if (SCENE_HAS_PANES && material.k_t > 0.0) {
@@ -165,7 +165,7 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Mat
     if (glows || path.coverage != 0.0) {
         float weight = 1.0;
         if (glows && path.pdf > 0.0) {
-            float sampled = pdf_emitter(path.ray.origin, direction, hit.t, surface);
+            float sampled = pdf_emitter(path.ray.origin, direction, hit.t, surface, named);
             weight = power_heuristic(path.pdf, sampled);
         }
         Spectrum seen = path.throughput * (own_light * weight);

@@ -48,21 +48,21 @@ void shade(PathState incoming, Hit hit) {
     }
     Surface surface = surface_at(path.ray, hit);
     uint named = surface.material;
-    Material material = material_at(path.ray.direction, hit, key, surface);
+    Material material = material_at(path.ray.direction, hit, key, DIMENSION_LEAF, surface);
     if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
         add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
 #ifdef ONLY_PATHS
-    shade_path(path, key, hit, surface, material);
+    shade_path(path, key, hit, surface, named, material);
 #else
     uint flags = SCENE_HAS_FACETS && SCENE_INTEGRATOR == INTEGRATOR_LOCAL ? load_instance(hit.instance).flags : 0u;
     for (uint index = 0u; index < shading_points(flags); index++) {
         ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
         Material material_there = material;
         if (faceted(flags)) {
-            material_there = material_at(-point.wo, point.hit, key, point.surface);
+            material_there = material_at(-point.wo, point.hit, key, DIMENSION_LEAF, point.surface);
         }
         shade_local(path, key, point, material_there);
     }

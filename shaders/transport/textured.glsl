@@ -61,29 +61,38 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
 }
 
 // The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour. Of a blend it is
-// one that is none, drawn by the weights, (1 - extra) of the first and extra of the second; `surface.material` names it.
-// `key`: of the path, which meets one surface at most.
-Material material_at(vec3 direction, Hit hit, SampleKey key, inout Surface surface) {
+// one that is none, drawn by the weights, (1 - extra) of the first and extra of the second, or by the side that is seen;
+// `surface.material` names it.
+// `key`: of the path, which draws with `dimension` at one surface at most.
+Material material_at(vec3 direction, Hit hit, SampleKey key, uint dimension, inout Surface surface) {
     Material material = load_material(surface.material);
 #ifdef CLASSIC_MODELS
     material.color *= surface.color;
     return apply_textures(material, direction, hit, surface);
 #else
+    float covered = 1.0;
     float u = 0.0;
     if (material.model == MODEL_BLEND) {
-        u = sample_1d(key, DIMENSION_LEAF);
+        u = sample_1d(key, dimension);
     }
     for (uint level = 0u; level < MAX_LEAVES; level++) {
         material.color *= surface.color;
         material = apply_textures(material, direction, hit, surface);
+        // Where a blend has holes, what it blends has none the less.
+        material.k_t = covered < 1.0 ? 1.0 - covered * (1.0 - material.k_t) : material.k_t;
         // Bake lets no blend be deeper.
         if (material.model != MODEL_BLEND || level + 1u == MAX_LEAVES) {
             break;
         }
+        covered = 1.0 - material.k_t;
         float weight = clamp_(material.extra, 0.0, 1.0);
         bool second = u < weight;
-        // What is left of u is as random again.
-        u = second ? div(u, weight) : div(u - weight, 1.0 - weight);
+        if ((material.flags & MATERIAL_BY_SIDE) != 0u) {
+            second = dot3(surface.normal_geometric, direction) > 0.0;
+        } else {
+            // What is left of u is as random again.
+            u = second ? div(u, weight) : div(u - weight, 1.0 - weight);
+        }
         surface.material = second ? material.table + 1u : material.table;
         material = load_material(surface.material);
     }

@@ -173,10 +173,8 @@ fn check_size(path: &Path, scene: &Scene, reference: &Image) -> Result<(), FilmE
     if film == (reference.width, reference.height) {
         return Ok(());
     }
-    let message = format!(
-        "the film is {}x{}, but its reference {}x{}",
-        film.0, film.1, reference.width, reference.height
-    );
+    let message =
+        format!("the film is {}x{}, but its reference {}x{}", film.0, film.1, reference.width, reference.height);
     Err(FilmError::bad(path, message))
 }
 

@@ -22,7 +22,9 @@ pub use material::{
     Transparency, WardNormalisation,
 };
 pub use mesh::Mesh;
-pub use settings::{Background, Environment, Film, Filter, Integrator, RenderSettings, Sampler, Shading, ToneMap, Window};
+pub use settings::{
+    Background, Environment, Film, Filter, Integrator, RenderSettings, Sampler, Shading, ToneMap, Window,
+};
 pub use table::Table;
 pub use texture::{Pattern, PatternKind, Texture, TextureData, Wrap};
 pub use transform::Transform;

@@ -1,8 +1,10 @@
 //! Light from things that have a size: which to sample, how, and how likely a ray that met one was to be such a sample.
 
+use super::DIMENSION_LIGHT_LEAF;
 use super::area_light::{
     area_to_solid_angle, sample_sphere_light, sample_triangle_light, solid_angle_ratio, sphere_pdf,
 };
+use super::local::emitted;
 use super::textured::material_at;
 use crate::layout::{
     EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_SPHERE, EMITTER_TEXTURED, Emitter, Hit, KIND_SPHERE, Ray, SceneView,
@@ -51,8 +53,8 @@ fn textured_radiance(
         ..Hit::default()
     };
     let mut surface = surface_at(scene, &ray, &hit);
-    let material = material_at(scene, lit.wi, &hit, key, &mut surface);
-    spectrum_from_rgb(emission_material(&material) * own_weight(&material))
+    let material = material_at(scene, lit.wi, &hit, key, DIMENSION_LIGHT_LEAF, &mut surface);
+    spectrum_from_rgb(emitted(&surface, &material, -lit.wi) * own_weight(&material))
 }
 
 /// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1. `key`: of the
@@ -92,11 +94,11 @@ pub fn casts_shadow(scene: &SceneView, emitter: &Emitter) -> bool {
 }
 
 /// Density per solid angle with which `sample_emitter`, its choice included, would have drawn the direction of a ray that
-/// left `origin` and met a glowing surface at `t`.
-pub fn pdf_emitter(scene: &SceneView, origin: Vec3, direction: Vec3, t: f32, surface: &Surface) -> f32 {
+/// left `origin` and met a glowing surface of material `named` at `t`.
+pub fn pdf_emitter(scene: &SceneView, origin: Vec3, direction: Vec3, t: f32, surface: &Surface, named: u32) -> f32 {
     let instance = load_instance(scene, surface.instance);
     // Without textures: what bake made the choice by.
-    let material = load_material(scene, surface.material);
+    let material = load_material(scene, named);
     let shown = spectrum_from_rgb(emission_material(&material) * own_weight(&material));
     let density = instance.light_density * spectrum_luminance(shown);
     if surface.kind == KIND_SPHERE {

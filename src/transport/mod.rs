@@ -29,6 +29,7 @@ pub const DIMENSION_BSDF: u32 = 18;
 pub const DIMENSION_LOBE: u32 = 19;
 pub const DIMENSION_ROULETTE: u32 = 20;
 pub const DIMENSION_PANE: u32 = 21;
+pub const DIMENSION_LIGHT_LEAF: u32 = 22;
 pub const DIMENSION_LEAF: u32 = 32;
 /// Dither of contributions: emission and ambient, background, alpha; light i takes `DITHER_LIGHT + i`.
 pub const DITHER_SURFACE: u32 = 0x1000_0000;

@@ -165,13 +165,15 @@ fn scatter(
 }
 
 /// Shades one hit: adds what glows, samples an emitter, and lets the path go on.
-/// `key`: of the path.
+/// `key`: of the path. `named`: the surface's material, of which `material` is what is met here.
+#[allow(clippy::too_many_arguments, reason = "to read like its twin")]
 pub fn shade_path(
     scene: &SceneView,
     incoming: &PathState,
     key: SampleKey,
     hit: &Hit,
     surface: &Surface,
+    named: u32,
     material: &Material,
     queues: &mut Queues,
 ) {
@@ -205,7 +207,7 @@ pub fn shade_path(
     if glows || path.coverage != 0.0 {
         let mut weight = 1.0;
         if glows && path.pdf > 0.0 {
-            let sampled = pdf_emitter(scene, path.ray.origin, direction, hit.t, surface);
+            let sampled = pdf_emitter(scene, path.ray.origin, direction, hit.t, surface, named);
             weight = power_heuristic(path.pdf, sampled);
         }
         let seen = path.throughput * (own_light * weight);

@@ -195,6 +195,7 @@ void store_constants() {
     constants[118] = CHANNEL_RGB;
     constants[119] = TEXTURES_MOST;
     constants[120] = SLIDE_ENTRIES;
+    constants[121] = MATERIAL_BY_SIDE;
 }
 
 void main() {

@@ -181,7 +181,15 @@ fn teapots(scene: &mut Scene, triangles: u64) {
 
 fn look(scene: &mut Scene, eye: [f32; 3], target: [f32; 3], fov_y_degrees: f32) {
     let projection = Projection::Perspective { fov_y: fov_y_degrees.to_radians() };
-    scene.camera = Camera { eye: Vec3::from(eye), target: Vec3::from(target), up: Vec3::Y, projection, lens: None, shift: Vec2::ZERO, mirrored: false };
+    scene.camera = Camera {
+        eye: Vec3::from(eye),
+        target: Vec3::from(target),
+        up: Vec3::Y,
+        projection,
+        lens: None,
+        shift: Vec2::ZERO,
+        mirrored: false,
+    };
 }
 
 fn add_material(scene: &mut Scene, material: Material) -> MaterialId {

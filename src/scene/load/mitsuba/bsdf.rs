@@ -120,6 +120,11 @@ impl Loader<'_> {
             }
             "principled" => self.principled(&object, &mut material)?,
             "null" => material.model = Model::Null,
+            "twosided" if object.nested("bsdf").len() == 2 => {
+                let children = first(2)?;
+                let front = self.nested_material(children[0], true, nesting + 1)?;
+                material.model = Model::Sides { front, back: self.nested_material(children[1], true, nesting + 1)? };
+            }
             "twosided" => {
                 return self
                     .build(first(1)?[0], true, nesting + 1)
@@ -194,7 +199,8 @@ impl Loader<'_> {
         let mean = self.textures.mean(texture, &self.scene).clamp(0.0, 1.0);
         let location = self.document.location_of(node);
         let plugin = object.plugin.name;
-        let message = format!("{location}: {name:?} of the bsdf {plugin:?} is the same all over here: {mean:.3}, its mean");
+        let message =
+            format!("{location}: {name:?} of the bsdf {plugin:?} is the same all over here: {mean:.3}, its mean");
         self.scene.warnings.push(message);
         Ok(mean as f32)
     }

@@ -7,8 +7,8 @@ use super::spectrum::Role;
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::intern;
 use crate::scene::{
-    Attenuation, Background, Channel, Environment, IntensityUnit, Light, LightKind, Material, Parameter, Rgb,
-    Slide, Texture, TextureBinding, Wrap,
+    Attenuation, Background, Channel, Environment, IntensityUnit, Light, LightKind, Material, Parameter, Rgb, Slide,
+    Texture, TextureBinding, Wrap,
 };
 use glam::{DAffine3, DVec3, Vec3};
 use std::f64::consts::PI;
@@ -90,7 +90,11 @@ impl Loader<'_> {
                 if inner > outer {
                     return Err(object.bad("beam_width", "\"beam_width\" is at most \"cutoff_angle\""));
                 }
-                let texture = object.property("texture").map(|node| self.texture(node)).transpose()?;
+                let texture = match object.property("texture") {
+                    Some(node) if self.document.tag(node) == "texture" => Some(self.texture(node)?),
+                    Some(_) => return Err(object.bad("texture", "the \"texture\" of a spot is a <texture>")),
+                    None => None,
+                };
                 let ramp = Some([inner, outer].map(|angle| angle.to_radians() as f32));
                 // Seen along the light's way, the picture of a spot is the right way round with x to the right.
                 let half = 0.5 / libm::tan(outer.to_radians());
@@ -101,7 +105,13 @@ impl Loader<'_> {
             "projector" => {
                 let place = object.transform("to_world")?.0;
                 let Some(picture) = object.property("irradiance") else { return object.required("irradiance", None) };
-                let texture = self.texture(picture)?;
+                let texture = match self.document.tag(picture) {
+                    "texture" => self.texture(picture)?,
+                    _ => {
+                        let color = super::color::color(self.document, picture, Role::Emission)?;
+                        intern(&mut self.scene.textures, super::texture::uniform(color))
+                    }
+                };
                 let Texture { width, height, .. } = self.scene.textures[texture.0 as usize];
                 let aspect = f64::from(width) / f64::from(height);
                 let tangent_y = libm::tan(super::sensor::read_fov(&object, aspect)? / 2.0);

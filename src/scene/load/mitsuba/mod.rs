@@ -17,6 +17,7 @@ mod shape;
 mod spectrum;
 mod texture;
 mod transform;
+mod upgrade;
 
 use super::staging::{bare_scene, lacks_camera};
 use crate::scene::{MaterialId, MeshId, Rgb, Scene, SceneError};

@@ -103,7 +103,11 @@ const fn plugin(
 use Kind::{Boolean, Color, Float, Index, Integer, Scalar, Text, Texture, Transform, Vector};
 
 const TO_WORLD: &[Property] = &[p("to_world", Transform, "identity")];
-const SHAPE: &[Property] = &[p("to_world", Transform, "identity"), p("flip_normals", Boolean, "false")];
+const SHAPE: &[Property] = &[
+    p("to_world", Transform, "identity"),
+    p("flip_normals", Boolean, "false"),
+    ignored("silhouette_sampling_weight", Float),
+];
 const MESH: &[Property] = &[p("filename", Text, ""), p("face_normals", Boolean, "false")];
 const FLIP_OBJ: &[Property] = &[p("flip_tex_coords", Boolean, "true")];
 const FLIP_PLY: &[Property] = &[p("flip_tex_coords", Boolean, "false")];
@@ -116,11 +120,7 @@ const SENSOR: &[Property] = &[
     ignored("shutter_open", Float),
     ignored("shutter_close", Float),
 ];
-const FOV: &[Property] = &[
-    p("fov", Float, ""),
-    p("fov_axis", Text, "x"),
-    p("focal_length", Text, "50mm"),
-];
+const FOV: &[Property] = &[p("fov", Float, ""), p("fov_axis", Text, "x"), p("focal_length", Text, "50mm")];
 const PRINCIPAL_POINT: &[Property] = &[
     p("principal_point_offset_x", Float, "0"),
     p("principal_point_offset_y", Float, "0"),
@@ -199,7 +199,16 @@ pub const PLUGINS: &[Plugin] = &[
     plugin("bsdf", "blendbsdf", &[&[p("weight", Scalar, "")]], &["bsdf"]),
     plugin("bsdf", "twosided", &[], &["bsdf"]),
     plugin("bsdf", "null", &[], &[]),
-    plugin("bsdf", "normalmap", &[&[p("normalmap", Texture, "")]], &["bsdf"]),
+    plugin(
+        "bsdf",
+        "normalmap",
+        &[&[
+            p("normalmap", Texture, ""),
+            ignored("flip_invalid_normals", Boolean),
+            ignored("use_shadowing_function", Boolean),
+        ]],
+        &["bsdf"],
+    ),
     plugin("bsdf", "bumpmap", &[&[p("scale", Float, "1")]], &["bsdf", "texture"]),
     plugin("emitter", "area", &[&[p("radiance", Texture, "1")]], &[]),
     plugin("emitter", "point", &[&[p("position", Vector, "0, 0, 0"), p("intensity", Color, "1")], TO_WORLD], &[]),
@@ -217,12 +226,7 @@ pub const PLUGINS: &[Plugin] = &[
         ],
         &[],
     ),
-    plugin(
-        "emitter",
-        "projector",
-        &[&[p("irradiance", Texture, ""), p("scale", Float, "1")], FOV, TO_WORLD],
-        &[],
-    ),
+    plugin("emitter", "projector", &[&[p("irradiance", Texture, ""), p("scale", Float, "1")], FOV, TO_WORLD], &[]),
     plugin("emitter", "directional", &[&[p("direction", Vector, ""), p("irradiance", Color, "1")], TO_WORLD], &[]),
     plugin("emitter", "constant", &[&[p("radiance", Color, "1")]], &[]),
     plugin(

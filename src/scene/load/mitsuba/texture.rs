@@ -7,7 +7,7 @@ use super::object::Object;
 use super::spectrum::Role;
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::{TextureFiles, intern};
-use crate::scene::{Scene, Texture, TextureData, TextureId, Wrap};
+use crate::scene::{Rgb, Scene, Texture, TextureData, TextureId, Wrap};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -87,6 +87,11 @@ impl Textures {
         place(&mut texture, object)?;
         Ok(texture)
     }
+}
+
+/// One texel of a colour.
+pub fn uniform(color: Rgb) -> Texture {
+    Texture::new("uniform", 1, 1, TextureData::Float(Arc::new(vec![[color.x, color.y, color.z, 1.0]])))
 }
 
 /// Of every texel; none of a pattern, which no scene of Mitsuba's has.
