@@ -193,6 +193,7 @@ fn crowd() -> SceneData {
         intensity: Rgb::ONE,
         unit: IntensityUnit::Radiometric,
         attenuation: Attenuation::InverseSquare,
+        flaps: Flaps::NONE,
         casts_shadow: true,
         slide: None,
     };

@@ -212,6 +212,7 @@ fn lamp(kind: LightKind, intensity: f32) -> Light {
         intensity: Rgb::splat(intensity),
         unit: IntensityUnit::Radiometric,
         attenuation: Attenuation::InverseSquare,
+        flaps: Flaps::NONE,
         casts_shadow: true,
         slide: None,
     }

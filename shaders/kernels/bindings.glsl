@@ -39,8 +39,17 @@ layout(constant_id = 16) const bool SCENE_HAS_ABSORPTION = true;
 layout(constant_id = 17) const bool SCENE_HAS_FACETS = true;
 layout(constant_id = 18) const bool SCENE_HAS_TEXTURES = true;
 layout(constant_id = 19) const bool SCENE_HAS_LENS = true;
+// Lights with flaps.
+layout(constant_id = 20) const bool SCENE_HAS_FLAPS = true;
+#define HAS_FLAPS SCENE_HAS_FLAPS
+// SHADOWS_FILTERED only if the scene has something to filter by.
+layout(constant_id = 21) const uint SCENE_SHADOWS = SHADOWS_OPAQUE;
+// Media with ranks.
+layout(constant_id = 22) const bool SCENE_NESTED = true;
 // Spots with a picture or a linear ramp.
-layout(constant_id = 20) const bool SCENE_HAS_SLIDES = true;
+layout(constant_id = 23) const bool SCENE_HAS_SLIDES = true;
+// Objects that cast no shadow.
+layout(constant_id = 24) const bool SCENE_SHADOWLESS = true;
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };

@@ -173,6 +173,15 @@ float own_weight(Material material) {
     return (material.flags & MATERIAL_FILTERED) != 0u ? 1.0 : 1.0 - material.k_t;
 }
 
+// What a pane multiplies the light by that passes it straight on: k_t, of a filter k_t O_t (row 22).
+Spectrum pane_tint(Material material) {
+    vec4 tint = vec4(material.k_t);
+    if ((material.flags & MATERIAL_FILTERED) != 0u) {
+        return tint * spectrum_from_rgb(material.transmit_color);
+    }
+    return tint;
+}
+
 // Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) where there is an interface.
 Spectrum albedo_material(Material material) {
     vec3 diffuse = material.color * material.k_d;

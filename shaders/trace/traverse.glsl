@@ -105,9 +105,9 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
     } while (walking);
 }
 
-// The closest hit, or with `any` any hit of an instance that casts a shadow.
-// `any` is a constant wherever this is called: drivers inline it twice, each time with half its branches.
-Hit traverse(Ray ray, bool any) {
+// The closest hit, or with `any` any hit; with `casting` of an instance that casts a shadow.
+// Both are constants wherever this is called: drivers inline it, each time with half its branches.
+Hit traverse(Ray ray, bool any, bool casting) {
     Hit hit = Hit(ray.t_max, 0.0, 0.0, INVALID, 0u, 0u, 0u, 0u);
     if (header.top_root == INVALID || !within_reach(ray.origin)) {
         return hit;
@@ -142,7 +142,7 @@ Hit traverse(Ray ray, bool any) {
             uint id = load_top_instance(take_primitive(instances));
             Instance record = load_instance(id);
             vec3 origin = object_origin(record, ray.origin);
-            if (!(any && (record.flags & INSTANCE_NO_SHADOW) != 0u) && within_reach(origin)) {
+            if (!(casting && (record.flags & INSTANCE_NO_SHADOW) != 0u) && within_reach(origin)) {
                 LevelRay level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
                 if (SCENE_HAS_SPHERES && record.kind == KIND_SPHERE) {
                     test_sphere(ray, level, id, hit);
@@ -159,12 +159,17 @@ Hit traverse(Ray ray, bool any) {
 // The closest hit of a ray at 0 < t <= t_max, with ties in t to the lower (instance, primitive);
 // `instance == INVALID` for none.
 Hit trace_closest(Ray ray) {
-    return traverse(ray, false);
+    return traverse(ray, false, false);
 }
 
 // Whether anything that casts shadows lies at 0 < t <= t_max.
 bool trace_any(Ray ray) {
-    return traverse(ray, true).instance != INVALID;
+    return traverse(ray, true, true).instance != INVALID;
+}
+
+// The closest hit of what casts shadows, as `trace_closest`.
+Hit trace_occluder(Ray ray) {
+    return traverse(ray, false, true);
 }
 
 #endif

@@ -52,7 +52,7 @@ PathState generate(Batch batch, uint slot) {
     path.eta = 1.0;
     path.pdf = 0.0;
     path.absorption = vec3(0.0);
-    path.pad1 = 0u;
+    path.interior = 0u;
     return path;
 }
 

@@ -116,10 +116,7 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
 // Lets the ray go on through a pane.
 void shade_through(PathState path, Surface surface, Material material) {
     if (SCENE_HAS_PANES && material.k_t > 0.0) {
-        vec4 tint = vec4(material.k_t);
-        if ((material.flags & MATERIAL_FILTERED) != 0u) {
-            tint *= spectrum_from_rgb(material.transmit_color);
-        }
+        vec4 tint = pane_tint(material);
         PathState through = path;
         through.throughput = path.throughput * tint;
         through.coverage = path.coverage * material.k_t;

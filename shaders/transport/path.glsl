@@ -5,7 +5,8 @@
 // weighted by the power heuristic. A path goes on as one ray. `direct` is the case of one scattering event.
 //
 // Panes (k_t, opacity) are a choice at random between the surface and what lies behind; passing is no scattering event.
-// Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit.
+// Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit; filtered shadow rays do
+// (`transport/shadow`), and a ray that passes one stays a sample of the direction it was drawn with.
 #ifndef TRANSPORT_PATH_GLSL
 #define TRANSPORT_PATH_GLSL
 
@@ -20,6 +21,7 @@
 #include "trace/surface.glsl"
 #include "transport/emitter.glsl"
 #include "transport/local.glsl"
+#include "transport/nested.glsl"
 #include "transport/mod.glsl"
 #include "transport/weight.glsl"
 
@@ -41,6 +43,15 @@ void add_limited(PathState path, Spectrum value, float coverage, uint dither) {
     add_contribution(header.film_scale, path.slot, vec4(seen.x, seen.y, seen.z, coverage), dither);
 }
 
+// Weight of light that a ray of density `own` has met where light samples would have had density `sampled`. An object that
+// casts no shadow is in the way of the one and not of the other, so in its scene light samples count in full.
+float met_weight(float own, float sampled) {
+    if (SCENE_SHADOWLESS && sampled > 0.0) {
+        return 0.0;
+    }
+    return power_heuristic(own, sampled);
+}
+
 // Adds what a ray that leaves the scene sees.
 void shade_escape(PathState path, SampleKey key) {
     Spectrum radiance = background(path.ray.direction);
@@ -50,7 +61,7 @@ void shade_escape(PathState path, SampleKey key) {
     float weight = 1.0;
     if (HAS_EMITTER(EMITTER_ENVIRONMENT) && path.pdf > 0.0) {
         float sampled = header.environment_density * pdf_environment(path.ray.direction);
-        weight = power_heuristic(path.pdf, sampled);
+        weight = met_weight(path.pdf, sampled);
     }
     Spectrum seen = path.throughput * (radiance * weight);
     add_limited(path, seen, 0.0, dither_hash(key, DITHER_BACKGROUND));
@@ -78,7 +89,7 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
         return;
     }
     float weight = 1.0;
-    if (lit.pdf_solid_angle > 0.0) {
+    if (lit.pdf_solid_angle > 0.0 && !SCENE_SHADOWLESS) {
         weight = power_heuristic(lit.pdf_solid_angle, pdf_material(material, wo_local, wi_local));
     }
     float factor = limit(path.depth + 1u, reflected * weight);
@@ -88,7 +99,7 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
     uint dither = dither_hash(key, DITHER_LIGHT);
     if (casts_shadow(emitter)) {
         Ray ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
-        push_shadow(ShadowRay(ray, contribution, path.slot, dither, limited, 0u));
+        push_shadow(ShadowRay(ray, contribution, path.slot, dither, 0u, limited));
     } else {
         if (limited != 0u) count_limited();
         add_contribution(header.film_scale, path.slot, contribution, dither);
@@ -117,6 +128,10 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
     if ((bsdf.flags & SAMPLE_TRANSMIT) != 0u && material.model != MODEL_THIN_DIELECTRIC) {
         next.eta = path.eta * bsdf.eta;
         next.absorption = bsdf.wi.z < 0.0 ? material.absorption : vec3(0.0);
+        if (SCENE_NESTED) {
+            next.interior = cross_interface(path.interior, material, bsdf.wi.z < 0.0);
+            next.absorption = medium_absorption(next.interior);
+        }
     }
     if (next.depth >= header.rr_depth) {
         float survives = survival(next.throughput, next.eta);
@@ -132,17 +147,32 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
     push_path(next);
 }
 
+// Whether shadow rays pass the surface as if it were not there.
+bool lets_shadow_rays_pass(Surface surface) {
+    return SCENE_SHADOWLESS && (load_instance(surface.instance).flags & INSTANCE_NO_SHADOW) != 0u;
+}
+
 // Shades one hit: adds what glows, samples an emitter, and lets the path go on.
 // `key`: of the path. `named`: the surface's material, of which `material` is what is met here.
 void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uint named, Material material) {
     PathState path = incoming;
     vec3 direction = path.ray.direction;
+    const bool filtered = SCENE_SHADOWS == SHADOWS_FILTERED;
+    // How far before the ray's origin its direction was drawn.
+    float passed = 0.0;
+    if (filtered && path.depth > 0u) {
+        passed = path.coverage;
+        path.coverage = 0.0;
+    }
+    if (header.hide_emitters != 0u && path.depth == 0u && emission_material(material) != vec3(0.0)) {
+        path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
+        path.ray = spawn_through(surface, direction, path.ray.t_max);
+        push_path(path);
+        return;
+    }
     if (SCENE_HAS_PANES && material.k_t > 0.0) {
         float own = own_weight(material);
-        vec4 tint = vec4(material.k_t);
-        if ((material.flags & MATERIAL_FILTERED) != 0u) {
-            tint *= spectrum_from_rgb(material.transmit_color);
-        }
+        vec4 tint = pane_tint(material);
         // Each side as often as it is bright.
         float share = spectrum_max(tint);
         float through = div(share, own + share);
@@ -150,7 +180,12 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uin
             path.throughput *= tint * rcp(through);
             path.coverage *= material.k_t * rcp(through);
             path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
-            path.pdf = 0.0;
+            if (filtered && path.depth > 0u) {
+                path.coverage = passed + hit.t;
+            }
+            if (!(filtered || lets_shadow_rays_pass(surface))) {
+                path.pdf = 0.0;
+            }
             path.ray = spawn_through(surface, direction, path.ray.t_max);
             push_path(path);
             return;
@@ -165,8 +200,9 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uin
     if (glows || path.coverage != 0.0) {
         float weight = 1.0;
         if (glows && path.pdf > 0.0) {
-            float sampled = pdf_emitter(path.ray.origin, direction, hit.t, surface, named);
-            weight = power_heuristic(path.pdf, sampled);
+            vec3 from = filtered ? path.ray.origin - direction * passed : path.ray.origin;
+            float sampled = pdf_emitter(from, direction, filtered ? passed + hit.t : hit.t, surface, named);
+            weight = met_weight(path.pdf, sampled);
         }
         Spectrum seen = path.throughput * (own_light * weight);
         add_limited(path, seen, path.coverage, dither_hash(key, DITHER_SURFACE));

@@ -10,6 +10,7 @@
 #include "trace/surface.glsl"
 #include "transport/generate.glsl"
 #include "transport/local.glsl"
+#include "transport/nested.glsl"
 #include "transport/textured.glsl"
 // Drivers inline everything before they cut it away, which takes seconds: a kernel has either paths or trees of rays.
 #ifdef ONLY_PATHS
@@ -49,6 +50,9 @@ void shade(PathState incoming, Hit hit) {
     Surface surface = surface_at(path.ray, hit);
     uint named = surface.material;
     Material material = material_at(path.ray.direction, hit, key, DIMENSION_LEAF, surface);
+    if (SCENE_NESTED && !meet_interface(path, surface, material)) {
+        return;
+    }
     if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);

@@ -2,7 +2,7 @@
 
 use crate::layout::{
     ATTENUATION_INVERSE_SQUARE, ATTENUATION_NONE, ATTENUATION_POLYNOMIAL, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT,
-    Light, SLIDE_ENTRIES,
+    Light, SLIDE_ENTRIES, T_INFINITE,
 };
 use crate::scene::{self, Attenuation, IntensityUnit, LightKind, Slide};
 use glam::{DVec3, Vec3};
@@ -34,7 +34,10 @@ pub fn bake_light(light: &scene::Light, tables: &mut Vec<f32>) -> Light {
         IntensityUnit::Lecture => std::f64::consts::PI,
         IntensityUnit::Radiometric => 1.0,
     };
+    let (near, far) = (Vec3::splat(-T_INFINITE), Vec3::splat(T_INFINITE));
     let mut baked = Light {
+        flaps_min: light.flaps.min.clamp(near, far),
+        flaps_max: light.flaps.max.clamp(near, far),
         intensity: (light.intensity.as_dvec3() * factor).as_vec3(),
         casts_shadow: u32::from(light.casts_shadow),
         ..Light::default()

@@ -317,11 +317,11 @@ fn place_parts(materials: &[scene::Material], index: usize, place: usize, baked:
 }
 
 /// Whether a surface of this material casts a shadow: what it says, or else all but transparent panes do, and what is not there.
-/// `traced`: by paths, which find the way through a pane themselves.
-pub fn casts_shadow(material: &scene::Material, traced: bool) -> bool {
+/// `met`: by paths, which find the way through a pane themselves, or by filtered shadow rays.
+pub fn casts_shadow(material: &scene::Material, met: bool) -> bool {
     let pane = match material.transparency {
         Some(Transparency::Interpolated { k_t } | Transparency::Filtered { k_t, .. }) => k_t > 0.0,
         None => matches!(material.model, Model::Null) || material.opacity == 0.0,
     };
-    material.casts_shadow.unwrap_or(traced || !pane)
+    material.casts_shadow.unwrap_or(met || !pane)
 }

@@ -126,7 +126,7 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let bake_start = Instant::now();
     let mut data = bake_scene(&scene)?;
     data.header.aovs = u32::from(!args.aov.is_empty());
-    data.header.hide_background = u32::from(args.transparent);
+    data.header.hide_background |= u32::from(args.transparent);
     let bake_time = bake_start.elapsed();
     let mut renderer = args.backend.renderer(&data)?;
     log::info!("rendering on {}", renderer.name());

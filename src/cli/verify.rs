@@ -21,7 +21,7 @@ use std::time::Instant;
 /// Side of a block of the documentation's pictures that is compared as one pixel: below it, filters and JPEG differ.
 const BLOCK: u32 = 4;
 /// Samples of each pixel of a documentation picture.
-const DISPLAY_SAMPLES: u32 = 16;
+const DISPLAY_SAMPLES: u32 = 32;
 
 #[derive(Args)]
 #[command(after_help = "\

@@ -61,6 +61,17 @@ pub struct Slide {
     pub projector: bool,
 }
 
+/// The box of the world that a light reaches (Warn 1983: planes of constant x, y or z, `min <= max`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flaps {
+    pub min: Vec3,
+    pub max: Vec3,
+}
+
+impl Flaps {
+    pub const NONE: Self = Self { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+}
+
 /// One light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
@@ -70,6 +81,7 @@ pub struct Light {
     pub intensity: Rgb,
     pub unit: IntensityUnit,
     pub attenuation: Attenuation,
+    pub flaps: Flaps,
     pub casts_shadow: bool,
     /// Of spots only.
     pub slide: Option<Slide>,

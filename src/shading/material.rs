@@ -32,7 +32,7 @@ use crate::shading::rough_conductor::{eval_rough_conductor, pdf_rough_conductor,
 use crate::shading::rough_dielectric::{eval_rough_dielectric, pdf_rough_dielectric, sample_rough_dielectric};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_zero};
 use crate::shading::ward::{eval_ward, pdf_ward, sample_ward};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 /// f |cos theta_i| (for the lecture's printed terms: the term over pi), per steradian, over the whole sphere.
 /// Lobes of zero width add nothing.
@@ -171,6 +171,16 @@ pub fn emission_material(material: &Material) -> Vec3 {
 #[inline]
 pub fn own_weight(material: &Material) -> f32 {
     if (material.flags & MATERIAL_FILTERED) != 0 { 1.0 } else { 1.0 - material.k_t }
+}
+
+/// What a pane multiplies the light by that passes it straight on: k_t, of a filter k_t O_t (row 22).
+#[inline]
+pub fn pane_tint(material: &Material) -> Spectrum {
+    let tint = Vec4::splat(material.k_t);
+    if (material.flags & MATERIAL_FILTERED) != 0 {
+        return tint * spectrum_from_rgb(material.transmit_color);
+    }
+    tint
 }
 
 /// Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) where there is an interface.

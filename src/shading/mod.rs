@@ -32,6 +32,7 @@ pub mod filter;
 pub mod footprint;
 pub mod frame;
 pub mod fresnel;
+pub mod interior;
 pub mod kelemen;
 pub mod lambert;
 pub mod light;

@@ -119,10 +119,10 @@ fn walk_mesh(
     }
 }
 
-/// The closest hit, or with `any` any hit of an instance that casts a shadow.
+/// The closest hit, or with `any` any hit; with `casting` of an instance that casts a shadow.
 /// Rust only: `deepest` becomes the number of entries of either stack in use at the worst moment.
 #[inline(always)]
-fn traverse(scene: &SceneView, ray: &Ray, any: bool, deepest: &mut u32) -> Hit {
+fn traverse(scene: &SceneView, ray: &Ray, any: bool, casting: bool, deepest: &mut u32) -> Hit {
     let mut hit = Hit { t: ray.t_max, instance: INVALID, ..Hit::default() };
     if scene.header.top_root == INVALID || !within_reach(ray.origin) {
         return hit;
@@ -154,7 +154,7 @@ fn traverse(scene: &SceneView, ray: &Ray, any: bool, deepest: &mut u32) -> Hit {
             let id = load_top_instance(scene, take_primitive(&mut instances));
             let record = load_instance(scene, id);
             let origin = object_origin(&record, ray.origin);
-            if !(any && (record.flags & INSTANCE_NO_SHADOW) != 0) && within_reach(origin) {
+            if !(casting && (record.flags & INSTANCE_NO_SHADOW) != 0) && within_reach(origin) {
                 let level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
                 if record.kind == KIND_SPHERE {
                     test_sphere(ray, &level, id, &mut hit);
@@ -180,17 +180,22 @@ fn push(stack: &mut [UVec2; STACK_SIZE as usize], height: &mut u32, group: UVec2
 /// The closest hit of a ray at 0 < t <= t_max, with ties in t to the lower (instance, primitive);
 /// `instance == INVALID` for none.
 pub fn trace_closest(scene: &SceneView, ray: &Ray) -> Hit {
-    traverse(scene, ray, false, &mut 0)
+    traverse(scene, ray, false, false, &mut 0)
 }
 
 /// Whether anything that casts shadows lies at 0 < t <= t_max.
 pub fn trace_any(scene: &SceneView, ray: &Ray) -> bool {
-    traverse(scene, ray, true, &mut 0).instance != INVALID
+    traverse(scene, ray, true, true, &mut 0).instance != INVALID
+}
+
+/// The closest hit of what casts shadows, as `trace_closest`.
+pub fn trace_occluder(scene: &SceneView, ray: &Ray) -> Hit {
+    traverse(scene, ray, false, true, &mut 0)
 }
 
 /// Stack entries that the ray's closest hit needed: what bake's `stack_depth` bounds. Rust only, for tests.
 pub fn stack_used(scene: &SceneView, ray: &Ray) -> u32 {
     let mut deepest = 0;
-    traverse(scene, ray, false, &mut deepest);
+    traverse(scene, ray, false, false, &mut deepest);
     deepest
 }

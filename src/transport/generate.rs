@@ -56,6 +56,6 @@ pub fn generate(scene: &SceneView, batch: &Batch, slot: u32) -> PathState {
         eta: 1.0,
         pdf: 0.0,
         absorption: Vec3::ZERO,
-        _pad1: 0,
+        interior: 0,
     }
 }

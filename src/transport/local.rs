@@ -2,12 +2,12 @@
 
 use super::{DITHER_LIGHT, DITHER_SURFACE, LOBE_THROUGH, Queues, add_contribution, push_path, push_shadow};
 use crate::layout::{
-    Hit, Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_FILTERED, MATERIAL_ONE_SIDED,
-    MATERIAL_TRANSMISSIVE, Material, PathState, SceneView, ShadowRay, load_light,
+    Hit, Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_ONE_SIDED, MATERIAL_TRANSMISSIVE, Material,
+    PathState, SceneView, ShadowRay, load_light,
 };
 use crate::shading::frame::{Frame, frame_from_normal, frame_from_tangent, to_local};
 use crate::shading::light::sample_light;
-use crate::shading::material::{ambient_material, emission_material, eval_material, is_delta, own_weight};
+use crate::shading::material::{ambient_material, emission_material, eval_material, is_delta, own_weight, pane_tint};
 use crate::shading::math::{dot3, normalize3};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine};
 use crate::shading::slide::slide_factor;
@@ -127,7 +127,7 @@ pub fn shade_local(
                     let ray = spawn_ray(&point.shadow_from, lit.wi, lit.distance * SHADOW_END);
                     push_shadow(
                         queues,
-                        ShadowRay { ray, contribution, slot: path.slot, dither: light_dither, limited: 0, _pad1: 0 },
+                        ShadowRay { ray, contribution, slot: path.slot, dither: light_dither, layer: 0, limited: 0 },
                     );
                 } else {
                     add_contribution(queues, scene.header.film_scale, path.slot, contribution, light_dither);
@@ -140,10 +140,7 @@ pub fn shade_local(
 /// Lets the ray go on through a pane.
 pub fn shade_through(scene: &SceneView, path: &PathState, surface: &Surface, material: &Material, queues: &mut Queues) {
     if material.k_t > 0.0 {
-        let mut tint = Vec4::splat(material.k_t);
-        if (material.flags & MATERIAL_FILTERED) != 0 {
-            tint *= spectrum_from_rgb(material.transmit_color);
-        }
+        let tint = pane_tint(material);
         let mut through = *path;
         through.throughput = path.throughput * tint;
         through.coverage = path.coverage * material.k_t;

@@ -5,10 +5,12 @@
 //! weighted by the power heuristic. A path goes on as one ray. `direct` is the case of one scattering event.
 //!
 //! Panes (k_t, opacity) are a choice at random between the surface and what lies behind; passing is no scattering event.
-//! Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit.
+//! Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit; filtered shadow rays do
+//! (`transport/shadow`), and a ray that passes one stays a sample of the direction it was drawn with.
 
 use super::emitter::{casts_shadow, choose_emitter, pdf_emitter, sample_emitter};
 use super::local::{SHADOW_END, emitted, is_hidden_back, shading_frame};
+use super::nested::medium_absorption;
 use super::weight::{consistent, power_heuristic, survival};
 use super::{
     DIMENSION_BSDF, DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, DIMENSION_LOBE, DIMENSION_PANE, DIMENSION_ROULETTE,
@@ -16,13 +18,14 @@ use super::{
     count_limited, push_path, push_shadow,
 };
 use crate::layout::{
-    EMITTER_LIGHT, Hit, MATERIAL_FILTERED, MODEL_THIN_DIELECTRIC, Material, PathState, SceneView, ShadowRay,
-    T_INFINITE, load_emitter,
+    EMITTER_LIGHT, Hit, INSTANCE_NO_SHADOW, MODEL_THIN_DIELECTRIC, Material, PathState, SHADOWS_FILTERED, SceneView, ShadowRay, T_INFINITE,
+    load_emitter, load_instance,
 };
 use crate::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
 use crate::shading::environment::{background, pdf_environment};
 use crate::shading::frame::{Frame, to_local, to_world};
-use crate::shading::material::{eval_material, is_delta, own_weight, pdf_material, sample_material};
+use crate::shading::interior::cross_interface;
+use crate::shading::material::{emission_material, eval_material, is_delta, own_weight, pane_tint, pdf_material, sample_material};
 use crate::shading::math::{div, rcp};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, sample_1d, sample_2d};
 use crate::shading::spectrum::{Spectrum, spectrum_flush, spectrum_from_rgb, spectrum_max};
@@ -51,6 +54,15 @@ fn add_limited(scene: &SceneView, path: &PathState, value: Spectrum, coverage: f
     add_contribution(queues, scene.header.film_scale, path.slot, contribution, dither);
 }
 
+/// Weight of light that a ray of density `own` has met where light samples would have had density `sampled`. An object that
+/// casts no shadow is in the way of the one and not of the other, so in its scene light samples count in full.
+pub fn met_weight(scene: &SceneView, own: f32, sampled: f32) -> f32 {
+    if scene.header.shadowless != 0 && sampled > 0.0 {
+        return 0.0;
+    }
+    power_heuristic(own, sampled)
+}
+
 /// Adds what a ray that leaves the scene sees.
 pub fn shade_escape(scene: &SceneView, path: &PathState, key: SampleKey, queues: &mut Queues) {
     let radiance = background(scene, path.ray.direction);
@@ -60,7 +72,7 @@ pub fn shade_escape(scene: &SceneView, path: &PathState, key: SampleKey, queues:
     let mut weight = 1.0;
     if path.pdf > 0.0 {
         let sampled = scene.header.environment_density * pdf_environment(scene, path.ray.direction);
-        weight = power_heuristic(path.pdf, sampled);
+        weight = met_weight(scene, path.pdf, sampled);
     }
     let seen = path.throughput * (radiance * weight);
     add_limited(scene, path, seen, 0.0, dither_hash(key, DITHER_BACKGROUND), queues);
@@ -98,7 +110,7 @@ fn shade_emitter(
         return;
     }
     let mut weight = 1.0;
-    if lit.pdf_solid_angle > 0.0 {
+    if lit.pdf_solid_angle > 0.0 && scene.header.shadowless == 0 {
         weight = power_heuristic(lit.pdf_solid_angle, pdf_material(scene, material, wo_local, wi_local));
     }
     let factor = limit(scene, path.depth + 1, reflected * weight);
@@ -108,7 +120,7 @@ fn shade_emitter(
     let dither = dither_hash(key, DITHER_LIGHT);
     if casts_shadow(scene, &emitter) {
         let ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
-        push_shadow(queues, ShadowRay { ray, contribution, slot: path.slot, dither, limited, _pad1: 0 });
+        push_shadow(queues, ShadowRay { ray, contribution, slot: path.slot, dither, layer: 0, limited });
     } else {
         if limited != 0 {
             count_limited(queues);
@@ -149,6 +161,10 @@ fn scatter(
     if (bsdf.flags & SAMPLE_TRANSMIT) != 0 && material.model != MODEL_THIN_DIELECTRIC {
         next.eta = path.eta * bsdf.eta;
         next.absorption = if bsdf.wi.z < 0.0 { material.absorption } else { Vec3::ZERO };
+        if scene.header.nested != 0 {
+            next.interior = cross_interface(path.interior, material, bsdf.wi.z < 0.0);
+            next.absorption = medium_absorption(scene, next.interior);
+        }
     }
     if next.depth >= scene.header.rr_depth {
         let survives = survival(next.throughput, next.eta);
@@ -162,6 +178,11 @@ fn scatter(
     }
     next.ray = spawn_ray(surface, wi, T_INFINITE);
     push_path(queues, next);
+}
+
+/// Whether shadow rays pass the surface as if it were not there.
+pub fn lets_shadow_rays_pass(scene: &SceneView, surface: &Surface) -> bool {
+    scene.header.shadowless != 0 && (load_instance(scene, surface.instance).flags & INSTANCE_NO_SHADOW) != 0
 }
 
 /// Shades one hit: adds what glows, samples an emitter, and lets the path go on.
@@ -179,12 +200,22 @@ pub fn shade_path(
 ) {
     let mut path = *incoming;
     let direction = path.ray.direction;
+    let filtered = scene.header.shadows == SHADOWS_FILTERED;
+    // How far before the ray's origin its direction was drawn.
+    let mut passed = 0.0;
+    if filtered && path.depth > 0 {
+        passed = path.coverage;
+        path.coverage = 0.0;
+    }
+    if scene.header.hide_emitters != 0 && path.depth == 0 && emission_material(material) != Vec3::ZERO {
+        path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
+        path.ray = spawn_through(surface, direction, path.ray.t_max);
+        push_path(queues, path);
+        return;
+    }
     if material.k_t > 0.0 {
         let own = own_weight(material);
-        let mut tint = Vec4::splat(material.k_t);
-        if (material.flags & MATERIAL_FILTERED) != 0 {
-            tint *= spectrum_from_rgb(material.transmit_color);
-        }
+        let tint = pane_tint(material);
         // Each side as often as it is bright.
         let share = spectrum_max(tint);
         let through = div(share, own + share);
@@ -192,7 +223,12 @@ pub fn shade_path(
             path.throughput *= tint * rcp(through);
             path.coverage *= material.k_t * rcp(through);
             path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
-            path.pdf = 0.0;
+            if filtered && path.depth > 0 {
+                path.coverage = passed + hit.t;
+            }
+            if !(filtered || lets_shadow_rays_pass(scene, surface)) {
+                path.pdf = 0.0;
+            }
             path.ray = spawn_through(surface, direction, path.ray.t_max);
             push_path(queues, path);
             return;
@@ -207,8 +243,9 @@ pub fn shade_path(
     if glows || path.coverage != 0.0 {
         let mut weight = 1.0;
         if glows && path.pdf > 0.0 {
-            let sampled = pdf_emitter(scene, path.ray.origin, direction, hit.t, surface, named);
-            weight = power_heuristic(path.pdf, sampled);
+            let from = path.ray.origin - direction * passed;
+            let sampled = pdf_emitter(scene, from, direction, passed + hit.t, surface, named);
+            weight = met_weight(scene, path.pdf, sampled);
         }
         let seen = path.throughput * (own_light * weight);
         add_limited(scene, &path, seen, path.coverage, dither_hash(key, DITHER_SURFACE), queues);

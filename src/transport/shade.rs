@@ -3,6 +3,7 @@
 use super::faceted::{faceted, shading_point, shading_points};
 use super::generate::sample_key;
 use super::local::{shade_local, shade_through};
+use super::nested::meet_interface;
 use super::path::{shade_escape, shade_path};
 use super::textured::material_at;
 use super::whitted::shade_whitted;
@@ -51,7 +52,10 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     }
     let mut surface = surface_at(scene, &path.ray, hit);
     let named = surface.material;
-    let material = material_at(scene, path.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
+    let mut material = material_at(scene, path.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
+    if scene.header.nested != 0 && !meet_interface(scene, &path, &surface, &mut material, queues) {
+        return;
+    }
     if scene.header.aovs != 0 && path.path_id == 0 {
         let albedo = albedo_material(&material);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);

@@ -140,7 +140,8 @@ pub fn empty_scene() -> Scene {
             min_weight: 0.001,
             rr_depth: 5,
             clamp: None,
-            shadows: true,
+            hide_emitters: false,
+            shadows: Shadows::Opaque,
             shading: Shading::Phong,
         },
         camera: Camera {

@@ -37,6 +37,8 @@ Material material(uint model) {
     m.table = 64u;
     m.m0_v = argument(13u);
     m.m1_v = 0.25;
+    m.k_t = 0.375;
+    m.transmit_color = vec3(0.5, 0.25, 0.75);
     m.exponent_v = argument(14u);
     m.extra = argument(15u);
     return m;
@@ -60,7 +62,7 @@ void main() {
         break;
     default:
         result(0u, ambient_material(m).x);
-        result(1u, albedo_material(m).y);
+        result(1u, albedo_material(m).y + pane_tint(m).y);
         result4(2u, mirror_weight(m, argument(5u)));
         result_u(6u, is_delta(m) ? 1u : 0u);
         result(7u, emission_material(m).x + own_weight(m));

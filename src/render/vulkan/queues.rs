@@ -10,7 +10,7 @@ use super::scene::SceneBuffers;
 use crate::bake::SceneData;
 use crate::layout::{
     Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, INTEGRATOR_PATH, KIND_SPHERE,
-    MODEL_EMISSIVE,
+    Light, MODEL_EMISSIVE, SHADOWS_FILTERED, T_INFINITE,
 };
 use crate::shaders;
 use glam::Vec3;
@@ -49,10 +49,13 @@ const NAMES: Stages<&str> = Stages {
 };
 
 /// Specialisation constants that say what the scene uses (`shaders/kernels/bindings.glsl`).
-fn scene_constants(data: &SceneData) -> [(u32, u32); 16] {
+fn scene_constants(data: &SceneData) -> [(u32, u32); 20] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
     let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
     let textures = data.materials.iter().any(|material| material.texture_count > 0);
+    let open =
+        |light: &Light| light.flaps_min.max_element() <= -T_INFINITE && light.flaps_max.min_element() >= T_INFINITE;
+    let flaps = !data.lights.iter().all(open);
     let models = data.materials.iter().fold(0, |mask, material| mask | 1 << material.model);
     [
         (5, data.stack_depth.max(1)),
@@ -65,13 +68,16 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 16] {
         (12, data.emitters.iter().fold(0, |mask, emitter| mask | 1 << emitter.kind)),
         (13, u32::from(data.emitters.iter().any(|emitter| emitter.flags & EMITTER_TEXTURED != 0))),
         (14, data.header.environment_maps),
-        // Textures may cut holes.
-        (15, u32::from(!data.textures.is_empty() || data.materials.iter().any(|material| material.k_t > 0.0))),
+        (15, u32::from(data.has_panes())),
         (16, u32::from(data.materials.iter().any(|material| material.absorption != Vec3::ZERO))),
         (17, u32::from(facets)),
         (18, u32::from(textures)),
         (19, u32::from(data.header.camera.lens_radius > 0.0)),
-        (20, u32::from(data.lights.iter().any(|light| light.slide != 0))),
+        (20, u32::from(flaps)),
+        (21, data.header.shadows),
+        (22, data.header.nested),
+        (23, u32::from(data.lights.iter().any(|light| light.slide != 0))),
+        (24, data.header.shadowless),
     ]
 }
 
@@ -87,6 +93,11 @@ fn shade_kernel(data: &SceneData) -> &'static str {
     }
 }
 
+/// The kernel that traces shadow rays: to anything, or on through panes.
+fn shadow_kernel(data: &SceneData) -> &'static str {
+    if data.header.shadows == SHADOWS_FILTERED { "shadow_filtered" } else { "shadow" }
+}
+
 /// The compiled kernels of a scene.
 pub struct Kernels(Stages<Kernel>);
 
@@ -96,7 +107,7 @@ impl Kernels {
         let mut constants = vec![(0, WORKGROUP)];
         constants.extend(scene.constants());
         constants.extend(scene_constants(data));
-        let kernels = Stages { shade: shade_kernel(data), ..NAMES }.try_map(|name| {
+        let kernels = Stages { shade: shade_kernel(data), shadow: shadow_kernel(data), ..NAMES }.try_map(|name| {
             let words = shaders::kernel(name, scene.fetch())
                 .ok_or_else(|| VulkanError::Device(format!("this program was built without the kernel {name}")))?;
             context.kernel(name, words, &constants, size_of::<Batch>())

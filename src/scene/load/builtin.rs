@@ -2,8 +2,8 @@
 
 use super::staging::bare_scene;
 use crate::scene::{
-    Attenuation, Background, Camera, Geometry, IntensityUnit, Light, LightKind, Location, Material, MaterialId, Mesh,
-    MeshId, Model, Object, Projection, Rgb, Scene, SceneError, Transform, shape,
+    Attenuation, Background, Camera, Flaps, Geometry, IntensityUnit, Light, LightKind, Location, Material, MaterialId,
+    Mesh, MeshId, Model, Object, Projection, Rgb, Scene, SceneError, Transform, shape,
 };
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
@@ -229,6 +229,7 @@ fn add_light(scene: &mut Scene, kind: LightKind, shown: f32) {
         intensity: Rgb::splat(shown * PI),
         unit: IntensityUnit::Radiometric,
         attenuation: Attenuation::None,
+        flaps: Flaps::NONE,
         casts_shadow: true,
         slide: None,
     });

@@ -6,8 +6,9 @@
 
 use super::bounds::{Bounds, Room, free_distance};
 use crate::scene::{
-    Attenuation, Background, Camera, Film, Filter, Geometry, Integrator, IntensityUnit, Light, LightKind, Material,
-    MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, Shading, ToneMap, Transform, shape,
+    Attenuation, Background, Camera, Film, Filter, Flaps, Geometry, Integrator, IntensityUnit, Light, LightKind,
+    Material, MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, Shading, Shadows, ToneMap,
+    Transform, shape,
 };
 use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::PI;
@@ -59,7 +60,8 @@ pub fn bare_scene(path: &Path) -> Scene {
             min_weight: 0.003,
             rr_depth: 5,
             clamp: None,
-            shadows: true,
+            hide_emitters: false,
+            shadows: Shadows::Opaque,
             shading: Shading::Phong,
         },
         camera: NO_CAMERA,
@@ -186,6 +188,7 @@ fn light(name: &str, kind: LightKind, irradiance: f32, attenuation: Attenuation,
         intensity: Rgb::splat(irradiance),
         unit: IntensityUnit::Radiometric,
         attenuation,
+        flaps: Flaps::NONE,
         casts_shadow,
         slide: None,
     }

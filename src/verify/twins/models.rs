@@ -10,7 +10,7 @@ use crate::layout::{
 };
 use crate::shading::material::{
     albedo_material, ambient_material, emission_material, eval_material, is_delta, mirror_weight, own_weight,
-    pdf_material, sample_material,
+    pane_tint, pdf_material, sample_material,
 };
 use crate::shading::sampling::{hash_u32, unit_float};
 use crate::verify::inputs::Domain::{self, Below, Direction, Range};
@@ -78,6 +78,8 @@ fn material(i: &In, model: u32) -> Material {
         m1: i.f(11),
         w0: 0.625,
         w1: 0.375,
+        k_t: 0.375,
+        transmit_color: Vec3::new(0.5, 0.25, 0.75),
         flags: i.u(12),
         table: TABLE_AT,
         m0_v: i.f(13),
@@ -100,7 +102,10 @@ fn sample(i: &In, o: &mut Out, model: u32) {
 
 fn rest(i: &In, o: &mut Out, model: u32) {
     let m = material(i, model);
-    o.f(ambient_material(&m).x).f(albedo_material(&m).y).v4(mirror_weight(&m, i.f(5))).u(u32::from(is_delta(&m)));
+    o.f(ambient_material(&m).x)
+        .f(albedo_material(&m).y + pane_tint(&m).y)
+        .v4(mirror_weight(&m, i.f(5)))
+        .u(u32::from(is_delta(&m)));
     o.f(emission_material(&m).x + own_weight(&m));
 }
 

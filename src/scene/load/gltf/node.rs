@@ -3,7 +3,7 @@
 use super::accessor::Accessors;
 use super::{Failure, Loader, Part};
 use crate::scene::{
-    Attenuation, Camera, Geometry, IntensityUnit, Light, LightKind, Object, Projection, Rgb, Transform,
+    Attenuation, Camera, Flaps, Geometry, IntensityUnit, Light, LightKind, Object, Projection, Rgb, Transform,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec3};
 use gltf::json::camera::Type as CameraType;
@@ -300,6 +300,7 @@ impl Loader<'_> {
             intensity: Rgb::from_array(light.color.map(channel)),
             unit: IntensityUnit::Radiometric,
             attenuation,
+            flaps: Flaps::NONE,
             casts_shadow: true,
             slide: None,
         });

@@ -7,7 +7,7 @@ use super::spectrum::Role;
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::intern;
 use crate::scene::{
-    Attenuation, Background, Channel, Environment, IntensityUnit, Light, LightKind, Material, Parameter, Rgb, Slide,
+    Attenuation, Background, Channel, Environment, Flaps, IntensityUnit, Light, LightKind, Material, Parameter, Rgb, Slide,
     Texture, TextureBinding, Wrap,
 };
 use glam::{DAffine3, DVec3, Vec3};
@@ -174,7 +174,8 @@ impl Loader<'_> {
     ) {
         let name = self.document.attribute(object.node, "id").unwrap_or(object.plugin.name).to_owned();
         let unit = IntensityUnit::Radiometric;
-        self.scene.lights.push(Light { name, kind, intensity, unit, attenuation, casts_shadow: true, slide });
+        let flaps = Flaps::NONE;
+        self.scene.lights.push(Light { name, kind, intensity, unit, attenuation, flaps, casts_shadow: true, slide });
     }
 
     /// There is one environment.

@@ -20,7 +20,7 @@ mod transform;
 mod upgrade;
 
 use super::staging::{bare_scene, lacks_camera};
-use crate::scene::{MaterialId, MeshId, Rgb, Scene, SceneError};
+use crate::scene::{MaterialId, MeshId, Rgb, Scene, SceneError, Shadows};
 use document::{Document, Node, hint};
 use object::CLASSES;
 use std::collections::HashMap;
@@ -113,6 +113,8 @@ impl Loader<'_> {
 
     fn finish(self) -> Result<Scene, SceneError> {
         let mut scene = self.scene;
+        // Masks have holes: their shadows too.
+        scene.settings.shadows = Shadows::Filtered;
         let glows = scene.materials.iter().any(|material| material.emission != Rgb::ZERO);
         if scene.lights.is_empty() && !glows && !scene.background.shines() {
             scene.warnings.push(format!("{}: the scene has no light: the picture will be black", scene.name));

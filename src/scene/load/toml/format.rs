@@ -64,7 +64,12 @@ pub static RENDER: Section = Section {
             "0",
             "Largest channel that one contribution of scattered light may add, against bright specks; darkens the picture, and says how often. 0: no limit (path)",
         ),
-        key("shadows", Kind::Boolean, "true", "Trace shadow rays"),
+        key(
+            "shadows",
+            Kind::Special("true, false or \"filtered\""),
+            "true",
+            "Trace shadow rays. true: panes (`k_t`, `opacity`) stop none, or under `path` and `direct`, which find the way through them by chance, all. `\"filtered\"`: each pane on the way weakens the light to k_t, or colours it by k_t O_t if it is a filter",
+        ),
         key(
             "shading",
             Kind::Choice(&SHADING_NAMES),
@@ -328,6 +333,16 @@ pub static GRID: Section = Section {
 
 const PLACED: &[&str] = &["point", "spot"];
 
+/// Flaps, one key an axis.
+const fn flaps(name: &'static str, meaning: &'static str) -> Key {
+    key(name, Kind::Special("two numbers [min, max]"), "none", meaning)
+}
+
+const FLAPS_X: Key =
+    flaps("flaps_x", "Warn's flaps (barn doors): the light reaches only what has its x, in the world, between the two");
+const FLAPS_Y: Key = flaps("flaps_y", "The same for y: light for the actor, none for the floor");
+const FLAPS_Z: Key = flaps("flaps_z", "The same for z");
+
 pub static LIGHT: Section = Section {
     name: "[[light]]",
     noun: "[[light]]",
@@ -343,6 +358,9 @@ pub static LIGHT: Section = Section {
         key("outer_angle", Kind::Number(Range::above(0.0, 90.0)), "30", "Half angle of the cone δ, degrees: no light beyond").only(&["spot"]),
         key("inner_angle", Kind::Number(Range::new(0.0, 90.0)), "`outer_angle`", "Half angle where the light begins to fall off towards the edge, degrees; equal to `outer_angle`: a hard edge").only(&["spot"]),
         key("exponent", Kind::Number(Range::new(0.0, 1.0e6)), "0", "Warn's p: the intensity is times cos^p of the angle off the axis").only(&["spot"]),
+        FLAPS_X,
+        FLAPS_Y,
+        FLAPS_Z,
         key("casts_shadow", Kind::Boolean, "true", "Whether things stop it"),
     ],
 };

@@ -98,6 +98,7 @@ pub static MATERIAL: Section = Section {
         key("eta", Kind::Special("a number from 0.01 to 20, \"glass\", \"water\" or \"diamond\"; with `k` a colour from 0.01 to 20"), "1.5", "Index of refraction relative to the outside: 1.5 glass, 1.333 water, 2.417 diamond").only(&["cook-torrance", "dielectric", "kelemen", "conductor", "rough-conductor", "rough-dielectric", "thin-dielectric", "plastic", "rough-plastic", "principled"]),
         key("k", Kind::Color(Range::new(0.0, 100.0)), "none", "Extinction coefficient; makes the material a conductor").only(METALS),
         key("absorption", Kind::Color(Range::NOT_NEGATIVE), "0", "Beer coefficient inside, per scene unit: after a distance d, e^(-absorption d) is left").only(&["dielectric", "rough-dielectric"]),
+        key("priority", Kind::Integer { min: 0, max: 255 }, "0", "Where clear bodies overlap the higher one is there alone: a drink (0) that reaches into its glass (1) touches it without a gap (Schmidt and Budge 2002). Of equal ones the later material. As long as no material has this key, what leaves a body is outside of all (whitted, path)").only(&["dielectric", "rough-dielectric"]),
         key("k_t", Kind::Number(Range::UNIT), "0", "Non-refractive transparency: the share of what lies behind").only(LOCAL),
         key("transparency_mode", Kind::Choice(&["interpolated", "filtered"]), "`\"interpolated\"`", "(1 - k_t) I_1 + k_t I_2, or I_1 + k_t O_t I_2").only(LOCAL),
         key("transparency_color", Kind::Color(Range::UNIT), "1", "O_t of filtered transparency").only(LOCAL),

@@ -6,6 +6,7 @@ use super::keys::Range;
 use super::place::read_rotation;
 use super::reader::{Reader, Result, in_range};
 use super::texture::Textures;
+use crate::scene::Shadows;
 use crate::scene::{
     Background, Camera, Environment, Film, Filter, Integrator, IntensityUnit, Lens, Projection, RenderSettings,
     Sampler, Shading, ToneMap,
@@ -45,7 +46,14 @@ pub fn read_render(root: &Reader, settings: &mut RenderSettings, light: &mut Lig
     if let Some(clamp) = table.float("clamp")? {
         settings.clamp = (clamp > 0.0).then_some(clamp);
     }
-    set(&mut settings.shadows, table.boolean("shadows")?);
+    if let Some(node) = table.node("shadows") {
+        settings.shadows = match &node.value {
+            Value::Boolean(true) => Shadows::Opaque,
+            Value::Boolean(false) => Shadows::Off,
+            Value::String(text) if text == "filtered" => Shadows::Filtered,
+            _ => return Err(table.mismatch("shadows", node)),
+        };
+    }
     set(&mut settings.shading, table.choice("shading", &SHADINGS)?);
     set(&mut light.unit, table.choice("intensity", &units)?);
     set(&mut light.ambient, table.color("ambient")?);

@@ -1,15 +1,9 @@
-//! The thin lens against closed forms, on the CPU backend (parity carries them over to devices).
+//! The thin lens.
 
-#[path = "common/mod.rs"]
-mod common;
-#[path = "common/scenes.rs"]
-mod scenes;
-
-use common::{empty_scene, object};
+use super::common::{empty_scene, object};
+use super::picture;
 use glam::{Vec2, Vec3};
-use gonio::bake::bake;
 use gonio::scene::*;
-use scenes::render_cpu;
 
 /// Distance of the picture's one thing from the lens.
 const FAR: f32 = 5.0;
@@ -53,7 +47,7 @@ fn an_edge_out_of_focus_blurs_as_its_circle_of_confusion_says() {
     for projection in [perspective(), Projection::Orthographic { height: 0.5 }] {
         for lens in [in_front, behind] {
             let scene = edge(Some(lens), projection);
-            let pixels = render_cpu(&scene, &bake(&scene).unwrap()).resolve().pixels;
+            let pixels = picture(&scene);
             let confusion = f64::from(lens.radius) * (1.0 - f64::from(FAR / lens.focus_distance)).abs();
             for (index, pixel) in pixels.iter().enumerate() {
                 // The pixel's middle where the edge is; across a pixel the profile is straight enough.
@@ -71,11 +65,8 @@ fn an_edge_out_of_focus_blurs_as_its_circle_of_confusion_says() {
 fn what_is_in_focus_is_as_sharp_as_through_a_pinhole() {
     for projection in [perspective(), Projection::Orthographic { height: 0.5 }] {
         let lens = Lens { radius: 0.5, focus_distance: FAR };
-        let picture = |lens| {
-            let scene = edge(lens, projection);
-            render_cpu(&scene, &bake(&scene).unwrap()).resolve().pixels
-        };
-        let (sharp, pinhole) = (picture(Some(lens)), picture(None));
+        let seen = |lens| picture(&edge(lens, projection));
+        let (sharp, pinhole) = (seen(Some(lens)), seen(None));
         for (index, (a, b)) in sharp.iter().zip(&pinhole).enumerate() {
             assert!((a[0] - b[0]).abs() < 1e-3, "pixel {index} of {projection:?}: {} and {}", a[0], b[0]);
         }
