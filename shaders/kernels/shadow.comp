@@ -11,7 +11,7 @@ void main() {
     if (i >= control.shadow_pending) return;
     ShadowRay shadow = load_shadow_ray(i);
     if (!trace_any(shadow.ray)) {
-        if (shadow.limited != 0u) count_limited();
+        if (SCENE_HAS_CLAMP && shadow.limited != 0u) count_limited();
         add_contribution(header.film_scale, shadow.slot, shadow.contribution, shadow.dither);
     }
 }

@@ -28,7 +28,7 @@
 // Factor that keeps a contribution of light that has been scattered within the scene's limit; below 1 where that bites.
 float limit(uint depth, Spectrum value) {
     float largest = spectrum_max(value);
-    if (header.clamp <= 0.0 || depth == 0u || largest <= header.clamp) {
+    if (!SCENE_HAS_CLAMP || depth == 0u || largest <= header.clamp) {
         return 1.0;
     }
     return div(header.clamp, largest);
@@ -38,7 +38,7 @@ float limit(uint depth, Spectrum value) {
 // `coverage`: what it adds to alpha.
 void add_limited(PathState path, Spectrum value, float coverage, uint dither) {
     float factor = limit(path.depth, value);
-    if (factor < 1.0) count_limited();
+    if (SCENE_HAS_CLAMP && factor < 1.0) count_limited();
     Spectrum seen = value * factor;
     add_contribution(header.film_scale, path.slot, vec4(seen.x, seen.y, seen.z, coverage), dither);
 }
@@ -101,7 +101,7 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
         Ray ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
         push_shadow(ShadowRay(ray, contribution, path.slot, dither, 0u, limited));
     } else {
-        if (limited != 0u) count_limited();
+        if (SCENE_HAS_CLAMP && limited != 0u) count_limited();
         add_contribution(header.film_scale, path.slot, contribution, dither);
     }
 }
@@ -164,7 +164,7 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uin
         passed = path.coverage;
         path.coverage = 0.0;
     }
-    if (header.hide_emitters != 0u && path.depth == 0u && emission_material(material) != vec3(0.0)) {
+    if (SCENE_HIDES_EMITTERS && path.depth == 0u && emission_material(material) != vec3(0.0)) {
         path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
         path.ray = spawn_through(surface, direction, path.ray.t_max);
         push_path(path);

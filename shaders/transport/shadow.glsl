@@ -15,7 +15,7 @@
 // rays are traced. A blend's material is drawn anew for each pane and light.
 void shade_shadow(ShadowRay shadow, Hit hit) {
     if (hit.instance == INVALID) {
-        if (shadow.limited != 0u) count_limited();
+        if (SCENE_HAS_CLAMP && shadow.limited != 0u) count_limited();
         add_contribution(header.film_scale, shadow.slot, shadow.contribution, shadow.dither);
         return;
     }
