@@ -15,6 +15,7 @@ use gonio::shading::material::{eval_material, pdf_material, sample_material};
 use gonio::shading::sampling::SampleKey;
 use gonio::trace::surface::surface_at;
 use gonio::trace::traverse::trace_closest;
+use gonio::transport::DIMENSION_LEAF;
 use gonio::transport::textured::material_at;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 use std::fs;
@@ -148,7 +149,7 @@ fn paths_meet_the_materials_of_a_blend_by_their_shares() {
     let met = |material: u32, key: SampleKey| {
         let mut surface = surface_at(&view, &ray, &hit);
         surface.material = material;
-        material_at(&view, ray.direction, &hit, key, &mut surface).color.x
+        material_at(&view, ray.direction, &hit, key, DIMENSION_LEAF, &mut surface).color.x
     };
     let mut counts = [0u32; 3];
     let samples = 40_000;

@@ -101,6 +101,7 @@ fn a_scene_without_settings_has_the_documented_defaults() {
         min_weight: 0.003,
         rr_depth: 5,
         clamp: None,
+        hide_emitters: false,
         shadows: Shadows::Opaque,
         shading: Shading::Phong,
     };
@@ -131,6 +132,7 @@ fn render_film_and_background_keys_arrive() {
         min_weight: 0.5,
         rr_depth: 2,
         clamp: Some(10.0),
+        hide_emitters: false,
         shadows: Shadows::Off,
         shading: Shading::Gouraud,
     };
@@ -139,6 +141,7 @@ fn render_film_and_background_keys_arrive() {
     let film = Film {
         width: 3,
         height: 2,
+        crop: None,
         filter: Filter::Gaussian { radius: 2.5, sigma: 0.5 },
         unit_exponent: -2,
         tonemap: ToneMap::Reinhard,

@@ -18,6 +18,7 @@ void main() {
     }
     ShadowRay shadow = load_shadow_ray(i);
     if (!trace_any(shadow.ray)) {
+        if (SCENE_HAS_CLAMP && shadow.limited != 0u) count_limited();
         add_contribution(header.film_scale, shadow.slot, shadow.contribution, shadow.dither);
     }
 }

@@ -57,6 +57,8 @@ const uint MATERIAL_WARD_1992 = 2048u;
 const uint MATERIAL_WARD_DUER = 4096u;
 // Material flag: the model has another side: its frame's z leaves the outside, whichever side is seen.
 const uint MATERIAL_TRANSMISSIVE = 8192u;
+// Material flag: of a blend, the first material in front and the second behind.
+const uint MATERIAL_BY_SIDE = 32768u;
 // Where `MATERIAL_*` keeps `DISTRIBUTION_*` of lobe 0, two bits; lobe 1 in the two above.
 const uint DISTRIBUTION_SHIFT = 16u;
 

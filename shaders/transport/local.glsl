@@ -7,6 +7,7 @@
 #include "shading/material.glsl"
 #include "shading/math.glsl"
 #include "shading/sampling.glsl"
+#include "shading/slide.glsl"
 #include "shading/spectrum.glsl"
 #include "trace/spawn.glsl"
 #include "trace/surface.glsl"
@@ -96,6 +97,7 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
         for (uint index = 0u; index < header.light_count; index++) {
             Light light = load_light(index);
             LightSample lit = sample_light(light, surface.position);
+            if (SCENE_HAS_SLIDES && light.slide != 0u) lit.radiance *= slide_factor(light, lit.wi);
             Spectrum seen = light_contribution(weight, material, frame, wo, lit.wi, lit.radiance);
             if (spectrum_max(seen) > 0.0) {
                 vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);

@@ -45,7 +45,7 @@ void shade(PathState incoming, Hit hit) {
     }
     Surface surface = surface_at(path.ray, hit);
     uint named = surface.material;
-    Material material = material_at(path.ray.direction, hit, key, surface);
+    Material material = material_at(path.ray.direction, hit, key, DIMENSION_LEAF, surface);
     if (SCENE_NESTED && !meet_interface(path, surface, material)) {
         return;
     }
@@ -55,7 +55,7 @@ void shade(PathState incoming, Hit hit) {
         add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
     if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
-        shade_path(path, key, hit, surface, material);
+        shade_path(path, key, hit, surface, named, material);
         return;
     }
     uint flags = SCENE_HAS_FACETS && SCENE_INTEGRATOR == INTEGRATOR_LOCAL ? load_instance(hit.instance).flags : 0u;
@@ -63,7 +63,7 @@ void shade(PathState incoming, Hit hit) {
         ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
         Material material_there = material;
         if (faceted(flags)) {
-            material_there = material_at(-point.wo, point.hit, key, point.surface);
+            material_there = material_at(-point.wo, point.hit, key, DIMENSION_LEAF, point.surface);
         }
         shade_local(path, key, point, material_there);
         if (!SCENE_HAS_FACETS || index + 1u >= shading_points(flags)) {

@@ -67,22 +67,31 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
 }
 
 // The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour. Of a blend it is
-// one that is none, drawn by the weights, (1 - extra) of the first and extra of the second; `surface.material` names it.
-// `key`: of the path, which meets one surface at most.
-Material material_at(vec3 direction, Hit hit, SampleKey key, inout Surface surface) {
+// one that is none, drawn by the weights, (1 - extra) of the first and extra of the second, or by the side that is seen;
+// `surface.material` names it.
+// `key`: of the path, which draws with `dimension` at one surface at most.
+Material material_at(vec3 direction, Hit hit, SampleKey key, uint dimension, inout Surface surface) {
     Material material = load_material(surface.material);
-    float u = HAS_MODEL(MODEL_BLEND) && material.model == MODEL_BLEND ? sample_1d(key, DIMENSION_LEAF) : 0.0;
+    float u = HAS_MODEL(MODEL_BLEND) && material.model == MODEL_BLEND ? sample_1d(key, dimension) : 0.0;
+    float covered = 1.0;
     for (uint level = 0u; level < MAX_LEAVES; level++) {
         material.color *= surface.color;
         material = apply_textures(material, direction, hit, surface);
+        // Where a blend has holes, what it blends has them too.
+        if (HAS_MODEL(MODEL_BLEND) && covered < 1.0) {
+            material.k_t = 1.0 - covered * (1.0 - material.k_t);
+        }
         // Bake lets no blend be deeper.
         if (!HAS_MODEL(MODEL_BLEND) || material.model != MODEL_BLEND || level + 1u == MAX_LEAVES) {
             break;
         }
+        covered = 1.0 - material.k_t;
+        bool by_side = (material.flags & MATERIAL_BY_SIDE) != 0u;
         float weight = clamp_(material.extra, 0.0, 1.0);
-        bool second = u < weight;
+        bool second = by_side ? dot3(surface.normal_geometric, direction) > 0.0 : u < weight;
         // What is left of u is as random again.
-        u = second ? div(u, weight) : div(u - weight, 1.0 - weight);
+        float rest = second ? div(u, weight) : div(u - weight, 1.0 - weight);
+        u = by_side ? u : rest;
         surface.material = second ? material.table + 1u : material.table;
         material = load_material(surface.material);
     }

@@ -35,7 +35,7 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     bake_textures(&scene.textures, &mut data);
     check_count("words of texels", data.texels.len())?;
     let default_material = bake_materials(scene, &mut data)?;
-    data.lights = scene.lights.iter().map(bake_light).collect();
+    data.lights = scene.lights.iter().map(|light| bake_light(light, &mut data.tables)).collect();
     data.times.materials_s = start.elapsed().as_secs_f64();
     let mut meshes = bake_meshes(scene, default_material);
     for mesh in meshes.iter().flatten() {
@@ -53,6 +53,8 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     data.header.instance_count = data.instances.len() as u32;
     data.header.light_count = data.lights.len() as u32;
     data.header.shadow_rays = shadow_rays(&data);
+    let shadowless = data.instances.iter().any(|instance| instance.flags & INSTANCE_NO_SHADOW != 0);
+    data.header.shadowless = u32::from(shadowless && data.header.integrator == INTEGRATOR_PATH);
     if data.header.shadows == SHADOWS_FILTERED && !data.has_panes() {
         data.header.shadows = SHADOWS_OPAQUE;
     }
@@ -371,6 +373,8 @@ fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
         film_scale: libm::ldexp(1.0, exponent) as f32,
         rr_depth: settings.rr_depth,
         clamp: settings.clamp.unwrap_or(0.0),
+        hide_background: u32::from(settings.hide_emitters && traced(scene)),
+        hide_emitters: u32::from(settings.hide_emitters && traced(scene)),
         level_count: if settings.integrator == Integrator::Whitted { max_depth + 1 } else { 1 },
         ..SceneHeader::default()
     })
@@ -393,6 +397,7 @@ fn camera(camera: &scene::Camera, film: &Film) -> Result<Camera, BakeError> {
     let right =
         normalise(cross(forward, camera.up.as_dvec3())).ok_or(BakeError::Camera("looks along its up vector"))?;
     let up = cross(right, forward);
+    let right = if camera.mirrored { -right } else { right };
     let (kind, half_height) = match camera.projection {
         Projection::Perspective { fov_y } => (crate::layout::CAMERA_PERSPECTIVE, libm::tan(f64::from(fov_y) * 0.5)),
         Projection::Orthographic { height } => (crate::layout::CAMERA_ORTHOGRAPHIC, f64::from(height) * 0.5),
@@ -409,6 +414,7 @@ fn camera(camera: &scene::Camera, film: &Film) -> Result<Camera, BakeError> {
         pixel_size: (2.0 * half_height / f64::from(film.height)) as f32,
         lens_radius: camera.lens.map_or(0.0, |lens| lens.radius),
         focus_distance: camera.lens.map_or(0.0, |lens| lens.focus_distance),
-        ..Camera::default()
+        shift_x: 2.0 * camera.shift.x,
+        shift_y: 2.0 * camera.shift.y,
     })
 }

@@ -175,7 +175,7 @@ fn develop(args: &RenderArgs, scene: &Scene, interrupt: &Interrupt, show_progres
     let bake_start = Instant::now();
     let mut data = bake_scene(scene)?;
     data.header.aovs = u32::from(!args.aov.is_empty());
-    data.header.hide_background = u32::from(args.transparent);
+    data.header.hide_background |= u32::from(args.transparent);
     let bake_time = bake_start.elapsed();
     let members = team::members(&args.backend, &data)?;
 
@@ -266,6 +266,7 @@ fn stats_json(
         "interrupted": outcome.interrupted.is_some(),
         "nan_count": film.nan_count(),
         "clamped_count": film.clamped_count(),
+        "limited_count": film.limited_count(),
         "render_s": seconds,
         "bake_s": bake_time.as_secs_f64(),
         "rays_per_s": rays as f64 / seconds.max(1e-9),

@@ -6,7 +6,7 @@ use crate::film::{Film, FilmSpec, Rect};
 use crate::render::cpu::CpuRenderer;
 use crate::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
 use crate::render::{RenderError, Renderer};
-use crate::scene::{Integrator, Scene, load};
+use crate::scene::{Integrator, Scene, Window, load};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
@@ -272,13 +272,18 @@ impl BackendFlags {
     }
 }
 
-/// The crop the flag asks for, checked against the frame; the whole frame without one.
+/// The crop the flag asks for, or else the scene, checked against the frame; the whole frame without either.
 pub fn crop_of(scene: &Scene, crop: Option<Crop>) -> anyhow::Result<Rect> {
     let whole = Rect::whole(scene.film.width, scene.film.height);
-    match crop {
-        None => Ok(whole),
-        Some(Crop(rect)) if whole.contains(&rect) => Ok(rect),
-        Some(Crop(rect)) => Err(Usage(format!("--crop {rect} is not inside the frame {whole}")).into()),
+    let own = scene.film.crop.map(|Window { x, y, width, height }| Rect { x, y, width, height });
+    let (what, rect) = match crop {
+        Some(Crop(rect)) => ("--crop", rect),
+        None => ("the scene's crop", own.unwrap_or(whole)),
+    };
+    match whole.contains(&rect) {
+        true => Ok(rect),
+        // --size may have made the frame smaller.
+        false => Err(Usage(format!("{what} {rect} is not inside the frame {whole}")).into()),
     }
 }
 

@@ -25,6 +25,8 @@ impl Shelf {
             up: Vec3::Y,
             projection: Projection::Orthographic { height: 1.0 },
             lens: None,
+            shift: Vec2::ZERO,
+            mirrored: false,
         };
         bare.materials = scene.materials.clone();
         bare.textures = scene.textures.clone();

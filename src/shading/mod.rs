@@ -50,6 +50,7 @@ pub mod principled;
 pub mod rough_conductor;
 pub mod rough_dielectric;
 pub mod sampling;
+pub mod slide;
 pub mod spectrum;
 pub mod tabulated;
 pub mod texture;

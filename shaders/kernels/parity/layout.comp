@@ -198,6 +198,8 @@ void store_constants() {
     constants[121] = SHADOWS_OFF;
     constants[122] = SHADOWS_OPAQUE;
     constants[123] = SHADOWS_FILTERED;
+    constants[124] = SLIDE_ENTRIES;
+    constants[125] = MATERIAL_BY_SIDE;
 }
 
 void main() {
