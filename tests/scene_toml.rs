@@ -462,7 +462,7 @@ fn flaps_lenses_shadows_and_priorities_out_of_range_are_refused() {
     refuses(light("flaps_y = [1, 0]"), "a.toml:9:11: \"flaps_y\" = [1, 0] has its smaller number last");
     refuses(
         light("flaps_y = [1, 2, 3]"),
-        "9:11: \"flaps_y\" must be two numbers [min, max], found an array of 3 values",
+        "9:11: \"flaps_y\" must be two numbers [min, max], found an array of 3",
     );
     let expected = "a.toml:2:18: \"focus_distance\" has no meaning without a \"lens_radius\" above 0";
     refuses(LEAST.replace("[camera]\n", "[camera]\nfocus_distance = 2\n"), expected);
