@@ -24,29 +24,37 @@ impl Sides {
         Self { context: device::context() }
     }
 
-    fn words(&mut self, family: &Family, name: &str, arguments: &[u32]) -> Vec<[f32; RESULTS]> {
+    /// The results for each set of arguments, side by side. One dispatch: drivers take seconds for a kernel.
+    fn words(&mut self, family: &Family, name: &str, sets: &[Vec<u32>]) -> Vec<Vec<[f32; RESULTS]>> {
         let number = family.twins.iter().position(|twin| twin.name == name).unwrap_or_else(|| panic!("{name}"));
-        let mut set = [0; ARGUMENTS];
-        set[..arguments.len()].copy_from_slice(arguments);
-        let mut sides = vec![evaluate(family, number, &set)];
-        if let Some(context) = &mut self.context {
-            sides.push(evaluate_on(context, family, number, &set).expect("the kernel runs"));
+        let mut inputs = vec![0; sets.len() * ARGUMENTS];
+        for (set, input) in sets.iter().zip(inputs.chunks_mut(ARGUMENTS)) {
+            input[..set.len()].copy_from_slice(set);
         }
-        sides.iter().map(|words| std::array::from_fn(|i| f32::from_bits(words[i]))).collect()
+        let mut sides = vec![evaluate(family, number, &inputs)];
+        if let Some(context) = &mut self.context {
+            sides.push(evaluate_on(context, family, number, &inputs).expect("the kernel runs"));
+        }
+        let result = |words: &Vec<u32>, set: usize| std::array::from_fn(|i| f32::from_bits(words[set * RESULTS + i]));
+        (0..sets.len()).map(|set| sides.iter().map(|words| result(words, set)).collect()).collect()
     }
 
-    fn floats(&mut self, family: &Family, name: &str, arguments: &[f64]) -> Vec<[f32; RESULTS]> {
-        let words: Vec<u32> = arguments.iter().map(|argument| (*argument as f32).to_bits()).collect();
-        self.words(family, name, &words)
+    fn floats(&mut self, name: &str, sets: &[Vec<f64>]) -> Vec<Vec<[f32; RESULTS]>> {
+        let words = |set: &Vec<f64>| set.iter().map(|argument| (*argument as f32).to_bits()).collect();
+        self.words(&shading::FAMILY, name, &sets.iter().map(words).collect::<Vec<_>>())
     }
 
-    /// Both sides of a function of `parity/shading` give `expected`, within `bound`.
+    /// Both sides of a function of `parity/shading` give what is expected of each set of arguments, within a bound.
     #[track_caller]
-    fn assert_near(&mut self, name: &str, arguments: &[f64], expected: &[f64], bound: f64) {
-        for (side, got) in self.floats(&shading::FAMILY, name, arguments).iter().enumerate() {
-            for (got, expected) in got.iter().zip(expected) {
-                let got = f64::from(*got);
-                assert!((got - expected).abs() <= bound, "{name}{arguments:?}, side {side}: {got} for {expected}");
+    fn assert_near(&mut self, name: &str, cases: &[(Vec<f64>, Vec<f64>, f64)]) {
+        let sets: Vec<Vec<f64>> = cases.iter().map(|(arguments, ..)| arguments.clone()).collect();
+        for ((arguments, expected, bound), sides) in cases.iter().zip(self.floats(name, &sets)) {
+            for (side, got) in sides.iter().enumerate() {
+                for (got, expected) in got.iter().zip(expected) {
+                    let got = f64::from(*got);
+                    let near = (got - expected).abs() <= *bound;
+                    assert!(near, "{name}{arguments:?}, side {side}: {got} for {expected}");
+                }
             }
         }
     }
@@ -64,19 +72,22 @@ fn polar(degrees: f64, azimuth: f64) -> DVec3 {
 #[test]
 fn fresnel_reflectances_are_the_printed_ones() {
     let mut sides = Sides::new();
-    sides.assert_near("fresnel_dielectric", &[cos(45.0), 1.5], &[0.050_239_9], 5e-8);
-    sides.assert_near("fresnel_dielectric", &[cos(10.0), 1.0 / 1.5], &[0.040_083_0], 5e-8);
-    // Brewster, 56.310 degrees: half of r_s^2 = (5 / 13)^2 alone; critical, 41.810 degrees.
-    sides.assert_near("fresnel_dielectric", &[cos(56.310), 1.5], &[25.0 / 338.0], 5e-7);
-    sides.assert_near("fresnel_dielectric", &[cos(41.811), 1.0 / 1.5], &[1.0], 0.0);
-    let below = &sides.floats(&shading::FAMILY, "fresnel_dielectric", &[cos(41.809), 1.0 / 1.5]);
-    assert!(below.iter().all(|side| side[0] < 0.99), "{below:?}");
+    let dielectric = [
+        (vec![cos(45.0), 1.5], vec![0.050_239_9], 5e-8),
+        (vec![cos(10.0), 1.0 / 1.5], vec![0.040_083_0], 5e-8),
+        // Brewster, 56.310 degrees: half of r_s^2 = (5 / 13)^2 alone; critical, 41.810 degrees.
+        (vec![cos(56.310), 1.5], vec![25.0 / 338.0], 5e-7),
+        (vec![cos(41.811), 1.0 / 1.5], vec![1.0], 0.0),
+    ];
+    sides.assert_near("fresnel_dielectric", &dielectric);
+    let below = sides.floats("fresnel_dielectric", &[vec![cos(41.809), 1.0 / 1.5]]);
+    assert!(below[0].iter().all(|side| side[0] < 0.99), "{below:?}");
     // Copper at 650, 550 and 450 nm (Johnson and Christy 1972), at normal incidence and at 85 degrees.
     let copper = [0.237_797_85, 1.006_626_9, 1.240_441_2, 3.626_414_5, 2.582_307_5, 2.392_941_2];
-    for (degrees, expected) in [(0.0, [0.9352, 0.6235, 0.5383]), (85.0, [0.960, 0.832, 0.797])] {
-        let arguments = [&[cos(degrees)], &copper[..]].concat();
-        sides.assert_near("fresnel_conductor3", &arguments, &expected, 5e-4);
-    }
+    let mut conductor = vec![
+        ([&[1.0], &copper[..]].concat(), vec![0.9352, 0.6235, 0.5383], 5e-5),
+        ([&[cos(85.0)], &copper[..]].concat(), vec![0.960, 0.832, 0.797], 5e-4),
+    ];
     // Metals under D65 at normal incidence, linear sRGB: gold's red, 1.022, is beyond what any surface reflects.
     for (symbol, expected) in [
         ("Cu", [0.955, 0.638, 0.537]),
@@ -87,21 +98,24 @@ fn fresnel_reflectances_are_the_printed_ones() {
         let metal = gonio::scene::load::toml::METALS.iter().find(|(name, _)| *name == symbol).expect("a metal").1;
         let gonio::scene::Fresnel::Conductor { eta, k } = metal.fresnel() else { panic!("{symbol}") };
         let arguments = [1.0f32].into_iter().chain(eta.to_array()).chain(k.to_array()).map(f64::from);
-        sides.assert_near("fresnel_conductor3", &arguments.collect::<Vec<_>>(), &expected, 1e-4);
+        conductor.push((arguments.collect(), expected.to_vec(), 1e-4));
     }
+    sides.assert_near("fresnel_conductor3", &conductor);
 }
 
 #[test]
 fn beckmann_s_distribution_has_the_printed_values() {
-    let mut sides = Sides::new();
-    sides.assert_near("beckmann_d", &[1.0, 0.1], &[31.830_987_9], 5e-6);
     let at = |m: f64, degrees: f64| libm::exp(-(libm::tan(degrees.to_radians()) / m).powi(2)) / (m * m);
-    // D(pi / 19), .1: the cosine's last digit counts 1e-6 of it.
-    sides.assert_near("beckmann_d", &[libm::cos(PI / 19.0), 0.1], &[2.076_730_7], 1e-4);
+    let mut cases = vec![
+        (vec![1.0, 0.1], vec![31.830_987_9], 5e-6),
+        // The cosine's last digit counts 1e-6 of it.
+        (vec![libm::cos(PI / 19.0), 0.1], vec![2.076_730_7], 1e-4),
+    ];
     for (m, degrees) in [(0.2, 20.0), (0.4, 35.0), (0.6, 60.0)] {
         let expected = at(m, degrees) * FRAC_1_PI / cos(degrees).powi(4);
-        sides.assert_near("beckmann_d", &[cos(degrees), m], &[expected], 1e-5 * expected);
+        cases.push((vec![cos(degrees), m], vec![expected], 1e-5 * expected));
     }
+    Sides::new().assert_near("beckmann_d", &cases);
 }
 
 /// min(1, 2(N.H)(N.V)/(V.H), 2(N.H)(N.L)/(V.H)) (row 16).
@@ -123,22 +137,21 @@ const ANGLES: [[f64; 4]; 7] = [
 
 #[test]
 fn masking_is_row_16_s_formula() {
-    let mut sides = Sides::new();
-    let mut below_one = 0;
-    for [light, light_phi, view, view_phi] in ANGLES {
+    let case = |[light, light_phi, view, view_phi]: [f64; 4]| {
         let (l, v) = (polar(light, light_phi), polar(view, view_phi));
         let h = (l + v).normalize();
-        let expected = grooves(l, v);
-        below_one += u32::from(expected < 1.0);
-        sides.assert_near("v_cavity_g", &[h.z, v.z, v.dot(h), l.z], &[expected], 1e-6);
-    }
+        (vec![h.z, v.z, v.dot(h), l.z], vec![grooves(l, v)], 1e-6)
+    };
+    let cases = ANGLES.map(case);
+    let below_one = cases.iter().filter(|(_, expected, _)| expected[0] < 1.0).count();
     assert!((2..6).contains(&below_one), "both sides of the kink: {below_one}");
+    Sides::new().assert_near("v_cavity_g", &cases);
 }
 
 #[test]
 fn cook_torrance_is_row_14_s_formula() {
-    let mut sides = Sides::new();
     let (m, k_s, eta) = (0.35, 0.6, 1.5);
+    let (mut sets, mut expected) = (Vec::new(), Vec::new());
     for flags in [0, MATERIAL_D_1982] {
         for [light, light_phi, view, view_phi] in ANGLES {
             let (l, v) = (polar(light, light_phi), polar(view, view_phi));
@@ -150,39 +163,47 @@ fn cook_torrance_is_row_14_s_formula() {
             let f = 0.5 * ((g - c) / (g + c)).powi(2) * (1.0 + ((c * (g + c) - 1.0) / (c * (g - c) + 1.0)).powi(2));
             let r_s = d * grooves(l, v) * f / (PI * v.z) * if flags == 0 { 1.0 } else { 4.0 };
             // The parity material's O_d is .75 in red, its O_s 1; both lobes have the slope m.
-            let expected = (1.0 - k_s) * 0.75 * FRAC_1_PI * l.z + k_s * r_s;
+            expected.push((1.0 - k_s) * 0.75 * FRAC_1_PI * l.z + k_s * r_s);
             let mut words: Vec<u32> = [v.x, v.y, v.z, l.x, l.y, l.z, 0.0, k_s, eta, 0.0, m, m]
                 .map(|argument| (argument as f32).to_bits())
                 .to_vec();
             words.extend([flags, (m as f32).to_bits()]);
-            for got in sides.words(&models::FAMILY, "eval_cook_torrance pdf_cook_torrance", &words) {
-                let got = f64::from(got[0]);
-                assert!((got - expected).abs() < 1e-5 * expected, "{light} {view}: {got} for {expected}");
-            }
+            sets.push(words);
+        }
+    }
+    let results = Sides::new().words(&models::FAMILY, "eval_cook_torrance pdf_cook_torrance", &sets);
+    for (case, (sides, expected)) in results.iter().zip(expected).enumerate() {
+        for (side, got) in sides.iter().enumerate() {
+            let got = f64::from(got[0]);
+            assert!((got - expected).abs() < 1e-5 * expected, "case {case}, side {side}: {got} for {expected}");
         }
     }
 }
 
 #[test]
 fn refraction_is_row_23_s_formula() {
-    let mut sides = Sides::new();
+    let mut cases = Vec::new();
     for (eta_i, eta_t) in [(1.0, 1.5), (1.5, 1.0), (1.0, 2.417), (1.333, 1.5)] {
         for degrees in [0.0, 10.0, 30.0, 41.0, 41.8, 41.82, 60.0, 85.0] {
-            let (l, ratio) = (polar(degrees, 25.0), eta_i / eta_t);
-            let cos2_t = 1.0 - ratio * ratio * (1.0 - l.z * l.z);
-            for got in sides.floats(&shading::FAMILY, "refract_local", &[l.x, l.y, l.z, eta_t / eta_i]) {
-                assert_eq!(got[4].to_bits() == 1, cos2_t < 0.0, "{eta_i} {eta_t} {degrees}: total");
-                if cos2_t < 0.0 {
-                    continue;
-                }
-                let t = DVec3::Z * (ratio * l.z - libm::sqrt(cos2_t)) - l * ratio;
-                let got = DVec3::new(got[0].into(), got[1].into(), got[2].into());
-                // Next to the critical angle the root has an endless slope.
-                let bound = if cos2_t < 1e-2 { 2e-4 } else { 2e-6 };
-                assert!((got - t).length() < bound, "{eta_i} {eta_t} {degrees}: {got} for {t}");
-                let sines = [eta_i * libm::sin(degrees.to_radians()), eta_t * got.truncate().length()];
-                assert!((sines[0] - sines[1]).abs() < 1e-3, "Snell: {sines:?}");
+            cases.push((eta_i, eta_t, degrees, polar(degrees, 25.0)));
+        }
+    }
+    let sets: Vec<Vec<f64>> = cases.iter().map(|(i, t, _, l)| vec![l.x, l.y, l.z, t / i]).collect();
+    for ((eta_i, eta_t, degrees, l), sides) in cases.into_iter().zip(Sides::new().floats("refract_local", &sets)) {
+        let ratio: f64 = eta_i / eta_t;
+        let cos2_t = 1.0 - ratio * ratio * (1.0 - l.z * l.z);
+        for got in sides {
+            assert_eq!(got[4].to_bits() == 1, cos2_t < 0.0, "{eta_i} {eta_t} {degrees}: total");
+            if cos2_t < 0.0 {
+                continue;
             }
+            let t = DVec3::Z * (ratio * l.z - libm::sqrt(cos2_t)) - l * ratio;
+            let got = DVec3::new(got[0].into(), got[1].into(), got[2].into());
+            // Next to the critical angle the root has an endless slope.
+            let bound = if cos2_t < 1e-2 { 2e-4 } else { 2e-6 };
+            assert!((got - t).length() < bound, "{eta_i} {eta_t} {degrees}: {got} for {t}");
+            let sines = [eta_i * libm::sin(degrees.to_radians()), eta_t * got.truncate().length()];
+            assert!((sines[0] - sines[1]).abs() < 1e-3, "Snell: {sines:?}");
         }
     }
 }

@@ -88,7 +88,8 @@ fn fresnel_curves_have_the_lectures_values() {
     // The 1982 paper's colours: the same at both ends, between them on the way to white by a common share.
     let early = &strips[1].colors;
     assert!(first.iter().zip(early[0]).all(|(a, b)| a.abs_diff(b) <= 1), "{first:?} {:?}", early[0]);
-    assert!(early[179].iter().all(|c| *c > 240), "{:?}", early[179]);
+    // A quarter of a degree before the end it is not all the way yet.
+    assert!(early[179].iter().all(|c| *c > 230), "{:?}", early[179]);
     assert!(early.windows(2).all(|pair| (0..3).all(|c| pair[1][c] >= pair[0][c])), "never darker");
 }
 

@@ -126,7 +126,7 @@ pub fn fit(shelf: &Shelf, index: usize, models: &[FitModel]) -> Result<Fitting, 
 /// Pairs over the angles of half and difference vectors, close together where highlights are: d omega_i d omega_o
 /// = 4 cos theta_d d omega_h d omega_d.
 fn pairs(shelf: &Shelf, index: usize, anisotropic: bool) -> Vec<Pair> {
-    let [halves, turns, differences, azimuths] = if anisotropic { [40, 16, 12, 12] } else { [80, 1, 20, 16] };
+    let [halves, turns, differences, azimuths] = if anisotropic { [36, 12, 10, 10] } else { [72, 1, 16, 12] };
     let middle = |i: usize, count: usize| (i as f64 + 0.5) / count as f64;
     let mut found = Vec::new();
     for h in 0..halves {
@@ -324,7 +324,7 @@ pub fn fit_figure(
     }
     if let Frame::Polar { unit, max, .. } = &mut figure.frame {
         figure.curves.iter_mut().flat_map(|curve| &mut curve.points).for_each(|point| point[1] = libm::cbrt(point[1]));
-        *unit = "∛ρ".into();
+        *unit = "cube root of ρ".into();
         let step = nice_step(libm::cbrt(*max) / 5.0);
         *max = (libm::cbrt(*max) / step - 1e-9).ceil() * step;
         figure.note = format!("cube root of ρ [1/sr] (luminance) in the plane of incidence, light from θ = {theta}°");
