@@ -32,6 +32,9 @@ pub fn members<'a>(flags: &BackendFlags, data: &'a SceneData) -> anyhow::Result<
         (_, Ok(devices)) if devices.iter().any(|device| device.name.contains(text)) => return Ok(one()),
         _ => text.split(',').map(|name| name.trim().to_owned()).collect(),
     };
+    if names.is_empty() {
+        return Err(RenderError::NoDevice("no Vulkan device of this machine can be used".to_owned()).into());
+    }
     let mut members = Vec::new();
     let mut taken: Vec<String> = Vec::new();
     for name in names {

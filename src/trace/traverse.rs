@@ -133,7 +133,7 @@ fn traverse(scene: &SceneView, ray: &Ray, any: bool, casting: bool, deepest: &mu
     if scene.header.top_root == INVALID || !within_reach(ray.origin) {
         return hit;
     }
-    // A single instance needs no walk to be found. Rust only.
+    // A lone instance needs no walk to be found.
     if scene.top_instances.len() == 1 {
         enter_instance(scene, ray, 0, any, casting, &mut hit, deepest);
         return hit;
