@@ -6,6 +6,7 @@ use super::filter::filter_table;
 use super::geometry::{BakedMesh, bake_mesh};
 use super::instance::{place, top_margin};
 use super::light::{bake_light, unit};
+use super::media::rank_media;
 use super::model::{bake_blends, bake_material, casts_shadow};
 use super::srgb::srgb_table;
 use super::texture::{bake_textures, bind_textures};
@@ -13,10 +14,10 @@ use super::{BakeError, SceneData};
 use crate::layout::{
     Camera, INSTANCE_FLAT, INSTANCE_GOURAUD, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH,
     INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH, KIND_SPHERE, Node, SAMPLER_INDEPENDENT, SAMPLER_SOBOL,
-    SAMPLER_STRATIFIED, STACK_SIZE, SceneHeader,
+    SAMPLER_STRATIFIED, SHADOWS_FILTERED, SHADOWS_OFF, SHADOWS_OPAQUE, STACK_SIZE, SceneHeader,
 };
 use crate::scene::{
-    self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene, Shading,
+    self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene, Shading, Shadows,
 };
 use crate::shading::material::emission_material;
 use glam::{DVec3, Vec3};
@@ -34,7 +35,7 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     bake_textures(&scene.textures, &mut data);
     check_count("words of texels", data.texels.len())?;
     let default_material = bake_materials(scene, &mut data)?;
-    data.lights = scene.lights.iter().map(bake_light).collect();
+    data.lights = scene.lights.iter().map(|light| bake_light(light, &mut data.tables)).collect();
     data.times.materials_s = start.elapsed().as_secs_f64();
     let mut meshes = bake_meshes(scene, default_material);
     for mesh in meshes.iter().flatten() {
@@ -51,11 +52,26 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     build_hierarchy(parts, &mut data)?;
     data.header.instance_count = data.instances.len() as u32;
     data.header.light_count = data.lights.len() as u32;
+    data.header.shadow_rays = shadow_rays(&data);
+    let shadowless = data.instances.iter().any(|instance| instance.flags & INSTANCE_NO_SHADOW != 0);
+    data.header.shadowless = u32::from(shadowless && data.header.integrator == INTEGRATOR_PATH);
+    if data.header.shadows == SHADOWS_FILTERED && !data.has_panes() {
+        data.header.shadows = SHADOWS_OPAQUE;
+    }
     data.header.material_count = data.materials.len() as u32;
     data.place_heap()?;
     data.warnings.extend(unused_shading(scene));
     data.times.whole_s = start.elapsed().as_secs_f64();
     Ok(data)
+}
+
+/// Shadow rays of one hit at most: to each light from each of its shading points, or to one emitter.
+fn shadow_rays(data: &SceneData) -> u32 {
+    let gouraud = data.instances.iter().any(|instance| instance.flags & INSTANCE_GOURAUD != 0);
+    match data.header.integrator {
+        INTEGRATOR_PATH => 1,
+        _ => data.lights.len() as u32 * if gouraud { 3 } else { 1 },
+    }
 }
 
 fn check_count(what: &'static str, count: usize) -> Result<(), BakeError> {
@@ -83,6 +99,7 @@ fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, Bak
     if scene.objects.iter().any(nameless) {
         data.materials.push(bake_material(&Material::grey("default"), &[], traced(scene), &mut data.tables)?);
     }
+    rank_media(&scene.materials, data)?;
     bake_blends(&scene.materials, &mut data.materials)?;
     check_count("table entries", data.tables.len())?;
     Ok(default)
@@ -240,7 +257,8 @@ fn instance_shading(scene: &Scene, object: &Object) -> Result<u32, BakeError> {
 /// Whether an object casts shadows: what it says, else what its material says. Shadow rays know instances, not
 /// faces: a mesh of both kinds of faces casts with all of them, and says so.
 fn instance_shadow(scene: &Scene, object: &Object) -> (bool, Option<String>) {
-    let of = |id: MaterialId| casts_shadow(&scene.materials[id.0 as usize], traced(scene));
+    let met = traced(scene) || scene.settings.shadows == Shadows::Filtered;
+    let of = |id: MaterialId| casts_shadow(&scene.materials[id.0 as usize], met);
     if let Some(casts) = object.casts_shadow {
         return (casts, None);
     }
@@ -347,10 +365,16 @@ fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
         },
         // For the sampler that needs them only: otherwise films made with --spp and --samples would differ in their digest.
         strata: if settings.sampler == Sampler::Stratified { strata(settings.samples) } else { 1 },
-        shadows: u32::from(settings.shadows),
+        shadows: match settings.shadows {
+            Shadows::Off => SHADOWS_OFF,
+            Shadows::Opaque => SHADOWS_OPAQUE,
+            Shadows::Filtered => SHADOWS_FILTERED,
+        },
         film_scale: libm::ldexp(1.0, exponent) as f32,
         rr_depth: settings.rr_depth,
         clamp: settings.clamp.unwrap_or(0.0),
+        hide_background: u32::from(settings.hide_emitters && traced(scene)),
+        hide_emitters: u32::from(settings.hide_emitters && traced(scene)),
         level_count: if settings.integrator == Integrator::Whitted { max_depth + 1 } else { 1 },
         ..SceneHeader::default()
     })
@@ -373,6 +397,7 @@ fn camera(camera: &scene::Camera, film: &Film) -> Result<Camera, BakeError> {
     let right =
         normalise(cross(forward, camera.up.as_dvec3())).ok_or(BakeError::Camera("looks along its up vector"))?;
     let up = cross(right, forward);
+    let right = if camera.mirrored { -right } else { right };
     let (kind, half_height) = match camera.projection {
         Projection::Perspective { fov_y } => (crate::layout::CAMERA_PERSPECTIVE, libm::tan(f64::from(fov_y) * 0.5)),
         Projection::Orthographic { height } => (crate::layout::CAMERA_ORTHOGRAPHIC, f64::from(height) * 0.5),
@@ -387,6 +412,9 @@ fn camera(camera: &scene::Camera, film: &Film) -> Result<Camera, BakeError> {
         scale_y: (2.0 / f64::from(film.height)) as f32,
         forward: unit(forward),
         pixel_size: (2.0 * half_height / f64::from(film.height)) as f32,
-        ..Camera::default()
+        lens_radius: camera.lens.map_or(0.0, |lens| lens.radius),
+        focus_distance: camera.lens.map_or(0.0, |lens| lens.focus_distance),
+        shift_x: 2.0 * camera.shift.x,
+        shift_y: 2.0 * camera.shift.y,
     })
 }

@@ -4,6 +4,7 @@ pub mod bench;
 pub mod compare;
 pub mod devices;
 mod exact;
+mod fit;
 mod gallery;
 mod growth;
 mod interrupt;
@@ -14,6 +15,7 @@ pub mod plot;
 mod progress;
 pub mod render;
 mod setup;
+mod sheet;
 mod team;
 pub mod verify;
 

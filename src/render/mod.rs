@@ -23,7 +23,7 @@ pub struct Job {
 pub struct Counters {
     pub closest_rays: u64,
     pub shadow_rays: u64,
-    /// Contributions that the scene's `clamp` has limited (before their shadow rays were traced).
+    /// Contributions that the scene's `clamp` has limited and that reached the film.
     pub limited: u64,
     /// Seconds on the device's own clock by stage (extend, shade, shadow, other); zero where it has none.
     pub extend_s: f64,

@@ -80,16 +80,6 @@ const PRIORITIES: [[u8; 256]; 8] = {
     table
 };
 
-/// `min` and `max` as one instruction where the built-ins care for NaNs: a NaN in `b` stays.
-#[inline(always)]
-fn approx_min(a: f32x8, b: f32x8) -> f32x8 {
-    a.fast_min(b)
-}
-#[inline(always)]
-fn approx_max(a: f32x8, b: f32x8) -> f32x8 {
-    a.fast_max(b)
-}
-
 /// Eight quantised planes, child 0 in the lowest byte.
 #[inline(always)]
 fn approx_planes(words: [u32; 2]) -> f32x8 {
@@ -117,7 +107,7 @@ fn approx_hit_bits(node: &Node, octant: u32, near: f32x8, far: f32x8) -> u32 {
 }
 
 /// Which of a node's eight children the ray may meet at a t from 0 to `t_max` (both included), as the bits of
-/// `approx_hit_bits`. `margin`: relative widening, `MESH_MARGIN` or the header's `top_margin`.
+/// `approx_hit_bits`. `margin`: relative widening, `MESH_MARGIN` or the header's `top_margin`. All eight at a time here.
 /// Source: Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
 /// section 3; the widening is ours (the bound above).
 #[inline(always)]
@@ -148,10 +138,13 @@ pub fn approx_intersect_node(node: &Node, ray: &LevelRay, margin: f32, t_max: f3
     let (near_y, far_y) = if ray.inverse.y < 0.0 { (&node.max_y, &node.min_y) } else { (&node.min_y, &node.max_y) };
     let (near_z, far_z) = if ray.inverse.z < 0.0 { (&node.max_z, &node.min_z) } else { (&node.min_z, &node.max_z) };
 
-    // All eight children at a time.
-    let near = |planes: &[u32; 2], axis: usize| approx_planes(*planes) * splat(scale[axis]) + splat(low[axis]);
-    let far = |planes: &[u32; 2], axis: usize| approx_planes(*planes) * splat(scale[axis]) + splat(high[axis]);
-    let near = approx_max(approx_max(near(near_x, 0), near(near_y, 1)), approx_max(near(near_z, 2), f32x8::ZERO));
-    let far = approx_min(approx_min(far(far_x, 0), far(far_y, 1)), approx_min(far(far_z, 2), splat(t_max)));
+    let near = (approx_planes(*near_x) * splat(scale[0]) + splat(low[0]))
+        .fast_max(approx_planes(*near_y) * splat(scale[1]) + splat(low[1]))
+        .fast_max(approx_planes(*near_z) * splat(scale[2]) + splat(low[2]))
+        .fast_max(f32x8::ZERO);
+    let far = (approx_planes(*far_x) * splat(scale[0]) + splat(high[0]))
+        .fast_min(approx_planes(*far_y) * splat(scale[1]) + splat(high[1]))
+        .fast_min(approx_planes(*far_z) * splat(scale[2]) + splat(high[2]))
+        .fast_min(splat(t_max));
     approx_hit_bits(node, ray.octant, near, far)
 }

@@ -31,8 +31,7 @@ fn is_closer(t: f32, instance: u32, primitive: u32, hit: &Hit) -> bool {
     t < hit.t || (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)))
 }
 
-/// Index of the highest bit of 1 <= x < 2^24, from the exponent of the float that it makes exactly: devices that are CPUs
-/// have no vector instruction for it.
+/// Index of the highest bit of 1 <= x < 2^24.
 #[inline(always)]
 fn highest_bit(x: u32) -> u32 {
     31 - x.leading_zeros()
@@ -126,17 +125,17 @@ fn walk_mesh(
     }
 }
 
-/// The closest hit, or with `any` any hit of an instance that casts a shadow.
+/// The closest hit, or with `any` any hit; with `casting` of an instance that casts a shadow.
 /// Rust only: `deepest` becomes the number of entries of either stack in use at the worst moment.
 #[inline(always)]
-fn traverse(scene: &SceneView, ray: &Ray, any: bool, deepest: &mut u32) -> Hit {
+fn traverse(scene: &SceneView, ray: &Ray, any: bool, casting: bool, deepest: &mut u32) -> Hit {
     let mut hit = Hit { t: ray.t_max, instance: INVALID, ..Hit::default() };
     if scene.header.top_root == INVALID || !within_reach(ray.origin) {
         return hit;
     }
     // A lone instance needs no walk to be found.
     if scene.top_instances.len() == 1 {
-        test_instance(scene, ray, load_top_instance(scene, 0), any, &mut hit, deepest);
+        enter_instance(scene, ray, 0, any, casting, &mut hit, deepest);
         return hit;
     }
     let mut stack = Stack::new();
@@ -163,20 +162,28 @@ fn traverse(scene: &SceneView, ray: &Ray, any: bool, deepest: &mut u32) -> Hit {
         }
 
         if instances.y != 0 {
-            let id = load_top_instance(scene, take_primitive(&mut instances));
-            test_instance(scene, ray, id, any, &mut hit, deepest);
+            enter_instance(scene, ray, take_primitive(&mut instances), any, casting, &mut hit, deepest);
         }
         walking = (instances.y != 0 || group.y > GROUP_EMPTY || !stack.is_empty()) && !(any && hit.instance != INVALID);
     }
     hit
 }
 
-/// Tests what instance `id` holds; `hit` becomes the closer of it and what is found.
+/// Tests what stands at `place` of the top level's order; `hit` becomes the closer of it and what is found.
 #[inline(always)]
-fn test_instance(scene: &SceneView, ray: &Ray, id: u32, any: bool, hit: &mut Hit, deepest: &mut u32) {
+fn enter_instance(
+    scene: &SceneView,
+    ray: &Ray,
+    place: u32,
+    any: bool,
+    casting: bool,
+    hit: &mut Hit,
+    deepest: &mut u32,
+) {
+    let id = load_top_instance(scene, place);
     let record = &scene.instances[id as usize];
     let origin = object_origin(record, ray.origin);
-    if (any && (record.flags & INSTANCE_NO_SHADOW) != 0) || !within_reach(origin) {
+    if (casting && (record.flags & INSTANCE_NO_SHADOW) != 0) || !within_reach(origin) {
         return;
     }
     let level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
@@ -196,34 +203,39 @@ fn push(stack: &mut Stack, group: UVec2, deepest: &mut u32) {
 
 /// One call of `traverse`, compiled for each set of vector instructions that this machine may have and run with the best it
 /// has: the same bits, since no compiler may fuse or reorder what is written. Rust only.
-struct Walk<'a, const ANY: bool> {
+struct Walk<'a, const ANY: bool, const CASTING: bool> {
     scene: &'a SceneView<'a>,
     ray: &'a Ray,
 }
 
-impl<const ANY: bool> NullaryFnOnce for Walk<'_, ANY> {
+impl<const ANY: bool, const CASTING: bool> NullaryFnOnce for Walk<'_, ANY, CASTING> {
     type Output = Hit;
 
     #[inline(always)]
     fn call(self) -> Hit {
-        traverse(self.scene, self.ray, ANY, &mut 0)
+        traverse(self.scene, self.ray, ANY, CASTING, &mut 0)
     }
 }
 
 /// The closest hit of a ray at 0 < t <= t_max, with ties in t to the lower (instance, primitive);
 /// `instance == INVALID` for none.
 pub fn trace_closest(scene: &SceneView, ray: &Ray) -> Hit {
-    Arch::new().dispatch(Walk::<false> { scene, ray })
+    Arch::new().dispatch(Walk::<false, false> { scene, ray })
 }
 
 /// Whether anything that casts shadows lies at 0 < t <= t_max.
 pub fn trace_any(scene: &SceneView, ray: &Ray) -> bool {
-    Arch::new().dispatch(Walk::<true> { scene, ray }).instance != INVALID
+    Arch::new().dispatch(Walk::<true, true> { scene, ray }).instance != INVALID
+}
+
+/// The closest hit of what casts shadows, as `trace_closest`.
+pub fn trace_occluder(scene: &SceneView, ray: &Ray) -> Hit {
+    Arch::new().dispatch(Walk::<false, true> { scene, ray })
 }
 
 /// Stack entries that the ray's closest hit needed: what bake's `stack_depth` bounds. Rust only, for tests.
 pub fn stack_used(scene: &SceneView, ray: &Ray) -> u32 {
     let mut deepest = 0;
-    traverse(scene, ray, false, &mut deepest);
+    traverse(scene, ray, false, false, &mut deepest);
     deepest
 }

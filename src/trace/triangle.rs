@@ -30,7 +30,6 @@ fn signed_area(x: f32x4, y: f32x4) -> f32x4 {
 /// box (`box_interval`), where it is except for triangles seen so edge-on that their weights are rounding noise.
 #[inline(always)]
 pub fn intersect_triangle(ray: &LevelRay, v0: &Vec3, v1: &Vec3, v2: &Vec3) -> Vec3 {
-    // Three corners in three lanes: what is done to each is the same.
     let corners: [&[f32; 3]; 3] = [v0.as_ref(), v1.as_ref(), v2.as_ref()];
     let along = |k: u32| {
         let k = (k as usize).min(2);

@@ -5,6 +5,7 @@ mod bad_text;
 mod bench;
 mod films;
 mod messages;
+mod panels;
 mod parity;
 mod pictures;
 mod render;

@@ -259,6 +259,7 @@ impl Renderer for VulkanRenderer {
         }
         log::debug!("{} rays in {} rounds", tally.counters.closest_rays, tally.last.rounds);
         film.record(job.samples.clone(), tally.nan_count, tally.clamped_count);
+        film.count_limited(tally.counters.limited);
         Ok(tally.counters)
     }
 
