@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 const TAKE: Take = Take { width: 24, height: 16, samples: 40, seed: 3 };
 
 fn scene() -> (Scene, SceneData) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/lecture/glass.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/lecture/23-glass.toml");
     scenes::prepare(&path, TAKE)
 }
 
