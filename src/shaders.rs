@@ -1,5 +1,9 @@
 //! The kernels, embedded by `build.rs`: proved strict and decorated `NoContraction` (ARCHITECTURE.md, "Strict arithmetic").
 
+mod specialise;
+
+pub use specialise::specialise;
+
 use rspirv::spirv::{Capability, ExecutionMode, Op};
 
 /// How a kernel reads the scene and its queues.

@@ -37,15 +37,22 @@ layout(constant_id = 15) const bool SCENE_HAS_PANES = true;
 layout(constant_id = 16) const bool SCENE_HAS_ABSORPTION = true;
 // Objects shaded flat or by Gouraud's method.
 layout(constant_id = 17) const bool SCENE_HAS_FACETS = true;
+// Of materials.
 layout(constant_id = 18) const bool SCENE_HAS_TEXTURES = true;
-layout(constant_id = 19) const bool SCENE_HAS_LENS = true;
+// One instance and no more: no top level to walk.
+layout(constant_id = 19) const bool SCENE_IS_ONE_INSTANCE = false;
+// Bit n: a texture of the scene has the format TEXEL_* or PATTERN_* n.
+layout(constant_id = 20) const uint FORMATS_PRESENT = 0xffffffffu;
+// Whether there is a format of the mask. Not `a || b` of two: that is control flow, even among constants.
+#define HAS_FORMATS(mask) ((FORMATS_PRESENT & (mask)) != 0u)
+layout(constant_id = 21) const bool SCENE_HAS_LENS = true;
 // Lights with flaps.
-layout(constant_id = 20) const bool SCENE_HAS_FLAPS = true;
+layout(constant_id = 22) const bool SCENE_HAS_FLAPS = true;
 #define HAS_FLAPS SCENE_HAS_FLAPS
 // SHADOWS_FILTERED only if the scene has something to filter by.
-layout(constant_id = 21) const uint SCENE_SHADOWS = SHADOWS_OPAQUE;
+layout(constant_id = 23) const uint SCENE_SHADOWS = SHADOWS_OPAQUE;
 // Media with ranks.
-layout(constant_id = 22) const bool SCENE_NESTED = true;
+layout(constant_id = 24) const bool SCENE_NESTED = true;
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };

@@ -33,13 +33,6 @@
 #define HAS_MODEL(model) true
 #endif
 #define ARM(model, call) case model: if (HAS_MODEL(model)) return call; break;
-// Drivers inline everything before they cut it away, which takes seconds: kernels for scenes of the classic models alone
-// leave the others out from the start (`CLASSIC_MODELS`, kernels/shade.comp).
-#ifdef CLASSIC_MODELS
-#define ARM_MORE(model, call)
-#else
-#define ARM_MORE(model, call) ARM(model, call)
-#endif
 
 // f |cos theta_i| (for the lecture's printed terms: the term over pi), per steradian, over the whole sphere.
 // Lobes of zero width add nothing.
@@ -49,16 +42,16 @@ Spectrum eval_material(Material material, vec3 wo, vec3 wi) {
     ARM(MODEL_PHONG, eval_phong(material, wo, wi))
     ARM(MODEL_BLINN_PHONG, eval_blinn_phong(material, wo, wi))
     ARM(MODEL_COOK_TORRANCE, eval_cook_torrance(material, wo, wi))
-    ARM_MORE(MODEL_OREN_NAYAR, eval_oren_nayar(material, wo, wi))
-    ARM_MORE(MODEL_WARD, eval_ward(material, wo, wi))
-    ARM_MORE(MODEL_ASHIKHMIN_SHIRLEY, eval_ashikhmin(material, wo, wi))
-    ARM_MORE(MODEL_KELEMEN, eval_kelemen(material, wo, wi))
-    ARM_MORE(MODEL_ROUGH_CONDUCTOR, eval_rough_conductor(material, wo, wi))
-    ARM_MORE(MODEL_ROUGH_DIELECTRIC, eval_rough_dielectric(material, wo, wi))
-    ARM_MORE(MODEL_PLASTIC, eval_plastic(material, wo, wi))
-    ARM_MORE(MODEL_ROUGH_PLASTIC, eval_rough_plastic(material, wo, wi))
-    ARM_MORE(MODEL_PRINCIPLED, eval_principled(material, wo, wi))
-    ARM_MORE(MODEL_MEASURED, eval_measured(material, wo, wi))
+    ARM(MODEL_OREN_NAYAR, eval_oren_nayar(material, wo, wi))
+    ARM(MODEL_WARD, eval_ward(material, wo, wi))
+    ARM(MODEL_ASHIKHMIN_SHIRLEY, eval_ashikhmin(material, wo, wi))
+    ARM(MODEL_KELEMEN, eval_kelemen(material, wo, wi))
+    ARM(MODEL_ROUGH_CONDUCTOR, eval_rough_conductor(material, wo, wi))
+    ARM(MODEL_ROUGH_DIELECTRIC, eval_rough_dielectric(material, wo, wi))
+    ARM(MODEL_PLASTIC, eval_plastic(material, wo, wi))
+    ARM(MODEL_ROUGH_PLASTIC, eval_rough_plastic(material, wo, wi))
+    ARM(MODEL_PRINCIPLED, eval_principled(material, wo, wi))
+    ARM(MODEL_MEASURED, eval_measured(material, wo, wi))
     default: break;
     }
     return spectrum_zero();
@@ -71,16 +64,16 @@ float pdf_material(Material material, vec3 wo, vec3 wi) {
     ARM(MODEL_PHONG, pdf_phong(material, wo, wi))
     ARM(MODEL_BLINN_PHONG, pdf_blinn_phong(material, wo, wi))
     ARM(MODEL_COOK_TORRANCE, pdf_cook_torrance(material, wo, wi))
-    ARM_MORE(MODEL_OREN_NAYAR, pdf_oren_nayar(material, wo, wi))
-    ARM_MORE(MODEL_WARD, pdf_ward(material, wo, wi))
-    ARM_MORE(MODEL_ASHIKHMIN_SHIRLEY, pdf_ashikhmin(material, wo, wi))
-    ARM_MORE(MODEL_KELEMEN, pdf_kelemen(material, wo, wi))
-    ARM_MORE(MODEL_ROUGH_CONDUCTOR, pdf_rough_conductor(material, wo, wi))
-    ARM_MORE(MODEL_ROUGH_DIELECTRIC, pdf_rough_dielectric(material, wo, wi))
-    ARM_MORE(MODEL_PLASTIC, pdf_plastic(material, wo, wi))
-    ARM_MORE(MODEL_ROUGH_PLASTIC, pdf_rough_plastic(material, wo, wi))
-    ARM_MORE(MODEL_PRINCIPLED, pdf_principled(material, wo, wi))
-    ARM_MORE(MODEL_MEASURED, pdf_measured(material, wo, wi))
+    ARM(MODEL_OREN_NAYAR, pdf_oren_nayar(material, wo, wi))
+    ARM(MODEL_WARD, pdf_ward(material, wo, wi))
+    ARM(MODEL_ASHIKHMIN_SHIRLEY, pdf_ashikhmin(material, wo, wi))
+    ARM(MODEL_KELEMEN, pdf_kelemen(material, wo, wi))
+    ARM(MODEL_ROUGH_CONDUCTOR, pdf_rough_conductor(material, wo, wi))
+    ARM(MODEL_ROUGH_DIELECTRIC, pdf_rough_dielectric(material, wo, wi))
+    ARM(MODEL_PLASTIC, pdf_plastic(material, wo, wi))
+    ARM(MODEL_ROUGH_PLASTIC, pdf_rough_plastic(material, wo, wi))
+    ARM(MODEL_PRINCIPLED, pdf_principled(material, wo, wi))
+    ARM(MODEL_MEASURED, pdf_measured(material, wo, wi))
     default: break;
     }
     return 0.0;
@@ -93,13 +86,13 @@ DirectionSample sample_direction(Material material, vec3 wo, vec2 u, float u_lob
     ARM(MODEL_PHONG, sample_phong(material, wo, u, u_lobe))
     ARM(MODEL_BLINN_PHONG, sample_blinn_phong(material, wo, u, u_lobe))
     ARM(MODEL_COOK_TORRANCE, sample_cook_torrance(material, wo, u, u_lobe))
-    ARM_MORE(MODEL_OREN_NAYAR, sample_oren_nayar(material, wo, u, u_lobe))
-    ARM_MORE(MODEL_WARD, sample_ward(material, wo, u, u_lobe))
-    ARM_MORE(MODEL_ASHIKHMIN_SHIRLEY, sample_ashikhmin(material, wo, u, u_lobe))
-    ARM_MORE(MODEL_KELEMEN, sample_kelemen(material, wo, u, u_lobe))
-    ARM_MORE(MODEL_ROUGH_CONDUCTOR, sample_rough_conductor(material, wo, u, u_lobe))
-    ARM_MORE(MODEL_ROUGH_PLASTIC, sample_rough_plastic(material, wo, u, u_lobe))
-    ARM_MORE(MODEL_MEASURED, sample_measured(material, wo, u, u_lobe))
+    ARM(MODEL_OREN_NAYAR, sample_oren_nayar(material, wo, u, u_lobe))
+    ARM(MODEL_WARD, sample_ward(material, wo, u, u_lobe))
+    ARM(MODEL_ASHIKHMIN_SHIRLEY, sample_ashikhmin(material, wo, u, u_lobe))
+    ARM(MODEL_KELEMEN, sample_kelemen(material, wo, u, u_lobe))
+    ARM(MODEL_ROUGH_CONDUCTOR, sample_rough_conductor(material, wo, u, u_lobe))
+    ARM(MODEL_ROUGH_PLASTIC, sample_rough_plastic(material, wo, u, u_lobe))
+    ARM(MODEL_MEASURED, sample_measured(material, wo, u, u_lobe))
     default: break;
     }
     return no_direction();
@@ -111,12 +104,12 @@ BsdfSample sample_material(Material material, vec3 wo, vec2 u, float u_lobe) {
     switch (material.model) {
     ARM(MODEL_MIRROR, sample_mirror(material, wo))
     ARM(MODEL_DIELECTRIC, sample_dielectric(material, wo, u_lobe))
-    ARM_MORE(MODEL_CONDUCTOR, sample_conductor(material, wo))
-    ARM_MORE(MODEL_ROUGH_DIELECTRIC, sample_rough_dielectric(material, wo, u, u_lobe))
-    ARM_MORE(MODEL_THIN_DIELECTRIC, sample_thin_dielectric(material, wo, u_lobe))
-    ARM_MORE(MODEL_PLASTIC, sample_plastic(material, wo, u, u_lobe))
-    ARM_MORE(MODEL_PRINCIPLED, sample_principled(material, wo, u, u_lobe))
-    ARM_MORE(MODEL_NULL, sample_null(wo))
+    ARM(MODEL_CONDUCTOR, sample_conductor(material, wo))
+    ARM(MODEL_ROUGH_DIELECTRIC, sample_rough_dielectric(material, wo, u, u_lobe))
+    ARM(MODEL_THIN_DIELECTRIC, sample_thin_dielectric(material, wo, u_lobe))
+    ARM(MODEL_PLASTIC, sample_plastic(material, wo, u, u_lobe))
+    ARM(MODEL_PRINCIPLED, sample_principled(material, wo, u, u_lobe))
+    ARM(MODEL_NULL, sample_null(wo))
     default: break;
     }
     DirectionSample direction = sample_direction(material, wo, u, u_lobe);

@@ -7,6 +7,12 @@
 #include "shading/math.glsl"
 #include "shading/sampling.glsl"
 
+// Kernels that know the scene leave out the formats it does not have (`FORMATS_PRESENT` in kernels/bindings.glsl).
+#ifndef HAS_FORMATS
+#define HAS_FORMATS(mask) true
+#endif
+#define HAS_FORMAT(format) HAS_FORMATS(1u << (format))
+
 // Octaves of noise at most.
 const uint OCTAVES_MOST = 16u;
 // Farther out than this (2^22) floats have no fraction left to make a pattern of.
@@ -75,8 +81,9 @@ float fractal_noise(vec2 uv, uint octaves, float gain, uint seed, float width) {
     float covered_width = width;
     float sum = 0.0;
     float total = 0.0;
-    uint count = octaves < OCTAVES_MOST ? octaves : OCTAVES_MOST;
-    for (uint octave = 0u; octave < count; octave++) {
+    uint count = octaves == 0u ? 1u : (octaves < OCTAVES_MOST ? octaves : OCTAVES_MOST);
+    uint octave = 0u;
+    do {
         // From a quarter of the wavelength on, nothing is left at a half (Nyquist's limit).
         float kept = clamp_(2.0 - 4.0 * covered_width, 0.0, 1.0);
         vec2 inside = vec2(within_pattern(place.x), within_pattern(place.y));
@@ -87,7 +94,8 @@ float fractal_noise(vec2 uv, uint octaves, float gain, uint seed, float width) {
         strength *= gain;
         place = place * 2.0;
         covered_width *= 2.0;
-    }
+        octave += 1u;
+    } while (octave < count);
     return div(sum, total);
 }
 
@@ -101,13 +109,17 @@ float zone_plate(vec2 uv) {
 // `pattern`: `PATTERN_*`. `octaves`, `gain` and `seed` count for noise alone.
 float pattern_share(uint pattern, vec2 uv, uint octaves, float gain, uint seed, float width) {
     vec2 place = vec2(within_pattern(uv.x), within_pattern(uv.y));
-    switch (pattern) {
-    case PATTERN_CHECKER: return checker(place, width);
-    case PATTERN_NOISE: return clamp_(0.5 + 0.5 * fractal_noise(place, octaves, gain, seed, width), 0.0, 1.0);
-    case PATTERN_GRADIENT: return wrap_coordinate(place.x, WRAP_MIRROR);
-    // PATTERN_ZONE_PLATE
-    default: return zone_plate(place);
+    if (HAS_FORMAT(PATTERN_CHECKER) && pattern == PATTERN_CHECKER) {
+        return checker(place, width);
     }
+    if (HAS_FORMAT(PATTERN_NOISE) && pattern == PATTERN_NOISE) {
+        return clamp_(0.5 + 0.5 * fractal_noise(place, octaves, gain, seed, width), 0.0, 1.0);
+    }
+    if (HAS_FORMAT(PATTERN_GRADIENT) && pattern == PATTERN_GRADIENT) {
+        return wrap_coordinate(place.x, WRAP_MIRROR);
+    }
+    // PATTERN_ZONE_PLATE
+    return zone_plate(place);
 }
 
 #ifdef GONIO_FETCH

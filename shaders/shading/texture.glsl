@@ -10,6 +10,9 @@
 #include "shading/math.glsl"
 #include "shading/pattern.glsl"
 
+#define HAS_PATTERN HAS_FORMATS(~0u << PATTERN_CHECKER)
+#define HAS_IMAGE HAS_FORMATS(~(~0u << PATTERN_CHECKER))
+
 // The f32 nearest to 1 / 255; 255 times it is exactly 1.
 const float INV_255 = 0.003921569;
 // Probes along the longer side of what a pixel covers, at most; beyond, both sides blur.
@@ -59,8 +62,7 @@ uint texel_byte(uint word, uint shift) {
 vec4 read_texel(Texture texture_record, int column, int row) {
     // Stored from the top row down.
     uint index = (texture_record.height - 1u - uint(row)) * texture_record.width + uint(column);
-    switch (texture_record.format) {
-    case TEXEL_SRGB8: {
+    if (HAS_FORMAT(TEXEL_SRGB8) && texture_record.format == TEXEL_SRGB8) {
         uint word = load_texel(texture_record.first_word + index);
         // The decoding table is the first of the table array.
         return vec4(
@@ -70,7 +72,7 @@ vec4 read_texel(Texture texture_record, int column, int row) {
             float(texel_byte(word, 24u)) * INV_255
         );
     }
-    case TEXEL_LINEAR8: {
+    if (HAS_FORMAT(TEXEL_LINEAR8) && texture_record.format == TEXEL_LINEAR8) {
         uint word = load_texel(texture_record.first_word + index);
         return vec4(
             float(texel_byte(word, 0u)) * INV_255,
@@ -80,16 +82,13 @@ vec4 read_texel(Texture texture_record, int column, int row) {
         );
     }
     // TEXEL_FLOAT
-    default: {
-        uint word = texture_record.first_word + 4u * index;
-        return vec4(
-            uintBitsToFloat(load_texel(word)),
-            uintBitsToFloat(load_texel(word + 1u)),
-            uintBitsToFloat(load_texel(word + 2u)),
-            uintBitsToFloat(load_texel(word + 3u))
-        );
-    }
-    }
+    uint word = texture_record.first_word + 4u * index;
+    return vec4(
+        uintBitsToFloat(load_texel(word)),
+        uintBitsToFloat(load_texel(word + 1u)),
+        uintBitsToFloat(load_texel(word + 2u)),
+        uintBitsToFloat(load_texel(word + 3u))
+    );
 }
 
 // The image at its own coordinates `uv` (finite), linear; alpha in lane 3.
@@ -110,14 +109,16 @@ vec4 read_image(Texture texture_record, vec2 uv) {
     vec4 image = vec4(0.0);
     // Left and right below, left and right above; nearest takes the first. One place that reads: it is inlined once.
     int corners = bilinear ? 4 : 1;
-    for (int corner = 0; corner < corners; corner++) {
+    int corner = 0;
+    do {
         int column_index = wrap_texel(int(left) + (corner & 1), int(texture_record.width), wrap_u);
         int row_index = wrap_texel(int(below) + (corner >> 1), int(texture_record.height), wrap_v);
         vec4 texel = read_texel(texture_record, column_index, row_index);
         // a + (b - a) t leaves equal neighbours exactly as they are.
         row = (corner & 1) == 0 ? texel : row + (texel - row) * weight_x;
         image = corner <= 1 ? row : image;
-    }
+        corner += 1;
+    } while (corner < corners);
     return bilinear ? image + (row - image) * weight_y : image;
 }
 
@@ -132,26 +133,31 @@ vec4 filter_texture(Texture texture_record, vec2 uv, Detail detail) {
     float blend = lambda - finer;
     uint levels = blend > 0.0 ? 2u : 1u;
     vec4 result = vec4(0.0);
-    for (uint offset = 0u; offset < levels; offset++) {
+    uint offset = 0u;
+    do {
         uint index = uint(finer) + offset;
         Texture level = texture_record;
         if (index != 0u) {
             level = load_texture(texture_record.first_level + (index - 1u));
         }
         vec4 sum = vec4(0.0);
-        for (uint probe = 0u; probe < detail.probes; probe++) {
+        uint probe = 0u;
+        do {
             vec2 place = uv + detail.spacing * ((float(probe) + 0.5) - 0.5 * float(detail.probes));
-            vec4 texel;
-            if (is_pattern) {
+            vec4 texel = vec4(0.0);
+            if (HAS_PATTERN && is_pattern) {
                 texel = sample_pattern(level, place, detail.width * rcp(float(texture_record.width)));
-            } else {
+            }
+            if (HAS_IMAGE && !is_pattern) {
                 texel = read_image(level, place);
             }
             sum = sum + texel;
-        }
+            probe += 1u;
+        } while (probe < detail.probes);
         vec4 mean = detail.probes == 1u ? sum : sum * rcp(float(detail.probes));
         result = offset == 0u ? mean : result + (mean - result) * blend;
-    }
+        offset += 1u;
+    } while (offset < levels);
     return result;
 }
 

@@ -67,6 +67,14 @@ vec4 approx_planes(uint word) {
     return vec4(planes);
 }
 
+// `min` and `max` as one instruction where the built-ins care for NaNs: a NaN in `b` stays.
+vec4 approx_min(vec4 a, vec4 b) {
+    return mix(b, a, lessThan(a, b));
+}
+vec4 approx_max(vec4 a, vec4 b) {
+    return mix(b, a, greaterThan(a, b));
+}
+
 // The bits that four children set if the ray meets their boxes. `meta`: their bytes of `child_meta`;
 // `near`, `far`: their intervals. Inner children set the bit of their priority in the top byte (Ylitie et al. 2017,
 // section 3.3: slot xor octant), leaves one bit a primitive in the lower 24.
@@ -105,7 +113,7 @@ uint approx_intersect_node(Node node, LevelRay ray, float margin, float t_max) {
     );
     vec3 corner = node.origin - ray.origin;
     vec3 extent = abs(corner) + step_ * 255.0;
-    vec3 error = abs(ray.inverse) * (max(max(extent.x, extent.y), extent.z) * margin);
+    vec3 error = abs(ray.inverse) * (max_(max_(extent.x, extent.y), extent.z) * margin);
     vec3 scale = step_ * ray.inverse;
     vec3 start = corner * ray.inverse;
     vec3 low = start - error;
@@ -122,22 +130,22 @@ uint approx_intersect_node(Node node, LevelRay ray, float margin, float t_max) {
 
     uint hits = 0u;
     // The two halves are written out: a loop would count against lavapipe's limit of loop iterations.
-    vec4 near = max(
-        max(approx_planes(near_x.x) * scale.x + low.x, approx_planes(near_y.x) * scale.y + low.y),
-        max(approx_planes(near_z.x) * scale.z + low.z, vec4(0.0))
+    vec4 near = approx_max(
+        approx_max(approx_planes(near_x.x) * scale.x + low.x, approx_planes(near_y.x) * scale.y + low.y),
+        approx_max(approx_planes(near_z.x) * scale.z + low.z, vec4(0.0))
     );
-    vec4 far = min(
-        min(approx_planes(far_x.x) * scale.x + high.x, approx_planes(far_y.x) * scale.y + high.y),
-        min(approx_planes(far_z.x) * scale.z + high.z, vec4(t_max))
+    vec4 far = approx_min(
+        approx_min(approx_planes(far_x.x) * scale.x + high.x, approx_planes(far_y.x) * scale.y + high.y),
+        approx_min(approx_planes(far_z.x) * scale.z + high.z, vec4(t_max))
     );
     hits |= approx_hit_bits(node.child_meta.x, ray.octant, near, far);
-    near = max(
-        max(approx_planes(near_x.y) * scale.x + low.x, approx_planes(near_y.y) * scale.y + low.y),
-        max(approx_planes(near_z.y) * scale.z + low.z, vec4(0.0))
+    near = approx_max(
+        approx_max(approx_planes(near_x.y) * scale.x + low.x, approx_planes(near_y.y) * scale.y + low.y),
+        approx_max(approx_planes(near_z.y) * scale.z + low.z, vec4(0.0))
     );
-    far = min(
-        min(approx_planes(far_x.y) * scale.x + high.x, approx_planes(far_y.y) * scale.y + high.y),
-        min(approx_planes(far_z.y) * scale.z + high.z, vec4(t_max))
+    far = approx_min(
+        approx_min(approx_planes(far_x.y) * scale.x + high.x, approx_planes(far_y.y) * scale.y + high.y),
+        approx_min(approx_planes(far_z.y) * scale.z + high.z, vec4(t_max))
     );
     hits |= approx_hit_bits(node.child_meta.y, ray.octant, near, far);
     return hits;

@@ -28,17 +28,27 @@ bool is_closer(float t, uint instance, uint primitive, Hit hit) {
         || (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)));
 }
 
+// Index of the highest bit of 1 <= x < 2^24, from the exponent of the float that it makes exactly: devices that are CPUs
+// have no vector instruction for it.
+uint highest_bit(uint x) {
+#ifdef FETCH_TEXEL
+    return (floatBitsToUint(float(int(x))) >> 23u) - 127u;
+#else
+    return uint(findMSB(x));
+#endif
+}
+
 // Takes the nearest child out of a group: its index in the node array.
 uint take_child(inout uvec2 group, uint octant) {
-    uint bit = uint(findMSB(group.y));
-    group.y &= ~(1u << bit);
-    uint slot = (bit - 24u) ^ (octant & 255u);
+    uint bit = highest_bit(group.y >> 24u);
+    group.y &= ~(0x01000000u << bit);
+    uint slot = bit ^ (octant & 255u);
     return group.x + uint(bitCount(group.y & ~(0xffffffffu << slot)));
 }
 
 // Takes one primitive out of a primitive group: its index in its array.
 uint take_primitive(inout uvec2 group) {
-    uint bit = uint(findMSB(group.y));
+    uint bit = highest_bit(group.y);
     group.y &= ~(1u << bit);
     return group.x + bit;
 }
@@ -75,34 +85,52 @@ void test_sphere(Ray ray, LevelRay level, uint instance, inout Hit hit) {
 // Walks the mesh of `instance` below `root`; `level` is the ray in its object space, `hit` becomes the closer of it and
 // what is found. With `any` the first hit ends the walk.
 void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inout Hit hit) {
-    uvec2 stack[STACK_DEPTH];
+    uvec2 stack[STACK_DEPTH + 1u];
     uint height = 0u;
     uvec2 group = uvec2(root, GROUP_ROOT);
+    uvec2 triangles = uvec2(0u);
     bool walking = true;
     do {
-        uint index = take_child(group, level.octant);
-        if (group.y > GROUP_EMPTY) {
+        // Nodes until there are triangles.
+        bool seeking = true;
+        do {
+            uint index = take_child(group, level.octant);
             stack[height] = group;
-            height += 1u;
-        }
-        Node node = load_node(index);
-        uint hits = approx_intersect_node(node, level, MESH_MARGIN, hit.t);
-        group = uvec2(node.child_base, (hits & 0xff000000u) | (node.exponents_imask >> 24u));
-        uvec2 triangles = uvec2(node.primitive_base, hits & GROUP_EMPTY);
+            height += group.y > GROUP_EMPTY ? 1u : 0u;
+            Node node = load_node(index);
+            uint hits = approx_intersect_node(node, level, MESH_MARGIN, hit.t);
+            group = uvec2(node.child_base, (hits & 0xff000000u) | (node.exponents_imask >> 24u));
+            triangles = uvec2(node.primitive_base, hits & GROUP_EMPTY);
+            if (group.y <= GROUP_EMPTY) {
+                walking = height != 0u;
+                if (walking) {
+                    height -= 1u;
+                    group = stack[height];
+                }
+            }
+            seeking = walking && triangles.y == 0u;
+        } while (seeking);
         do {
             if (triangles.y != 0u) {
                 test_triangle(ray, level, instance, take_primitive(triangles), hit);
             }
         } while (triangles.y != 0u);
-        if (group.y <= GROUP_EMPTY) {
-            walking = height != 0u;
-            if (walking) {
-                height -= 1u;
-                group = stack[height];
-            }
-        }
         walking = walking && !(any && hit.instance != INVALID);
     } while (walking);
+}
+
+// Tests what instance `id` holds, with `casting` only if it casts a shadow; `hit` becomes the closer of it and what is found.
+void test_instance(Ray ray, uint id, bool any, bool casting, inout Hit hit) {
+    Instance record = load_instance(id);
+    vec3 origin = object_origin(record, ray.origin);
+    if (!(casting && (record.flags & INSTANCE_NO_SHADOW) != 0u) && within_reach(origin)) {
+        LevelRay level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
+        if (SCENE_HAS_SPHERES && record.kind == KIND_SPHERE) {
+            test_sphere(ray, level, id, hit);
+        } else {
+            walk_mesh(ray, level, id, record.root, any, hit);
+        }
+    }
 }
 
 // The closest hit, or with `any` any hit; with `casting` of an instance that casts a shadow.
@@ -110,6 +138,10 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
 Hit traverse(Ray ray, bool any, bool casting) {
     Hit hit = Hit(ray.t_max, 0.0, 0.0, INVALID, 0u, 0u, 0u, 0u);
     if (header.top_root == INVALID || !within_reach(ray.origin)) {
+        return hit;
+    }
+    if (SCENE_IS_ONE_INSTANCE) {
+        test_instance(ray, 0u, any, casting, hit);
         return hit;
     }
     uvec2 stack[STACK_DEPTH];
@@ -139,17 +171,7 @@ Hit traverse(Ray ray, bool any, bool casting) {
         } while (instances.y == 0u && (group.y > GROUP_EMPTY || height != 0u));
 
         if (instances.y != 0u) {
-            uint id = load_top_instance(take_primitive(instances));
-            Instance record = load_instance(id);
-            vec3 origin = object_origin(record, ray.origin);
-            if (!(casting && (record.flags & INSTANCE_NO_SHADOW) != 0u) && within_reach(origin)) {
-                LevelRay level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
-                if (SCENE_HAS_SPHERES && record.kind == KIND_SPHERE) {
-                    test_sphere(ray, level, id, hit);
-                } else {
-                    walk_mesh(ray, level, id, record.root, any, hit);
-                }
-            }
+            test_instance(ray, load_top_instance(take_primitive(instances)), any, casting, hit);
         }
         walking = (instances.y != 0u || group.y > GROUP_EMPTY || height != 0u) && !(any && hit.instance != INVALID);
     } while (walking);

@@ -91,9 +91,10 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
     uint dither = dither_hash(key, DITHER_SURFACE + point.dither);
     add_contribution(header.film_scale, path.slot, vec4(own.x, own.y, own.z, alpha), dither);
 
-    if (!is_delta(material) && !hidden) {
+    if (!is_delta(material) && !hidden && header.light_count != 0u) {
         Frame frame = shading_frame(surface, material, wo);
-        for (uint index = 0u; index < header.light_count; index++) {
+        uint index = 0u;
+        do {
             Light light = load_light(index);
             LightSample lit = sample_light(light, surface.position);
             Spectrum seen = light_contribution(weight, material, frame, wo, lit.wi, lit.radiance);
@@ -107,7 +108,8 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
                     add_contribution(header.film_scale, path.slot, contribution, light_dither);
                 }
             }
-        }
+            index += 1u;
+        } while (index < header.light_count);
     }
 }
 

@@ -9,16 +9,12 @@
 #include "shading/spectrum.glsl"
 #include "trace/surface.glsl"
 #include "transport/generate.glsl"
+#include "transport/faceted.glsl"
 #include "transport/local.glsl"
 #include "transport/nested.glsl"
-#include "transport/textured.glsl"
-// Drivers inline everything before they cut it away, which takes seconds: a kernel has either paths or trees of rays.
-#ifdef ONLY_PATHS
 #include "transport/path.glsl"
-#else
-#include "transport/faceted.glsl"
+#include "transport/textured.glsl"
 #include "transport/whitted.glsl"
-#endif
 
 // Throughput below this is nothing, on every device alike (strict rule 4).
 const float THROUGHPUT_MIN = 1.0e-30;
@@ -30,13 +26,13 @@ void shade(PathState incoming, Hit hit) {
     SampleKey key = sample_key(path.pixel, path.sample_index, path.path_id);
     if (hit.instance == INVALID) {
         if (!(straight && header.hide_background != 0u)) {
-#ifdef ONLY_PATHS
-            shade_escape(path, key);
-#else
+            if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
+                shade_escape(path, key);
+                return;
+            }
             Spectrum seen = path.throughput * background(path.ray.direction);
             uint dither = dither_hash(key, DITHER_BACKGROUND);
             add_contribution(header.film_scale, path.slot, vec4(seen.x, seen.y, seen.z, 0.0), dither);
-#endif
         }
         return;
     }
@@ -50,31 +46,36 @@ void shade(PathState incoming, Hit hit) {
     Surface surface = surface_at(path.ray, hit);
     uint named = surface.material;
     Material material = material_at(path.ray.direction, hit, key, surface);
-    if (SCENE_NESTED && !meet_interface(path, surface, material)) {
-        return;
+    if (SCENE_NESTED) {
+        if (!meet_interface(path, surface, material)) {
+            return;
+        }
     }
     if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
         add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
-#ifdef ONLY_PATHS
-    shade_path(path, key, hit, surface, material);
-#else
+    if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
+        shade_path(path, key, hit, surface, material);
+        return;
+    }
     uint flags = SCENE_HAS_FACETS && SCENE_INTEGRATOR == INTEGRATOR_LOCAL ? load_instance(hit.instance).flags : 0u;
-    for (uint index = 0u; index < shading_points(flags); index++) {
+    // Tested after each turn, as every loop that is dear: devices in lockstep run a body once more to find that no lane is in it.
+    uint index = 0u;
+    do {
         ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
         Material material_there = material;
         if (faceted(flags)) {
             material_there = material_at(-point.wo, point.hit, key, point.surface);
         }
         shade_local(path, key, point, material_there);
-    }
+        index += 1u;
+    } while (SCENE_HAS_FACETS && index < shading_points(flags));
     shade_through(path, surface, material);
     if (SCENE_INTEGRATOR == INTEGRATOR_WHITTED && path.depth < header.max_depth) {
         shade_whitted(path, surface, material);
     }
-#endif
 }
 
 #endif

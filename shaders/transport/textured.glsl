@@ -23,7 +23,8 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
     UvGradients gradients = gradients_at(surface, hit);
     Footprint footprint = cone_footprint(gradients, surface.normal_geometric, direction, surface.cone_width);
     uint count = material.texture_count < TEXTURES_MOST ? material.texture_count : TEXTURES_MOST;
-    for (uint index = 0u; index < count; index++) {
+    uint index = 0u;
+    do {
         Texture texture_record = load_texture(material.first_texture + index);
         Detail detail = texture_detail(texture_record, footprint);
         vec2 uv = texture_uv(texture_record, surface.uv);
@@ -37,14 +38,16 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
         float height_v = 0.0;
         // To the right, to the left, above, below; other textures are read once, on the spot.
         uint taps = raises ? 4u : 1u;
-        for (uint tap = 0u; tap < taps; tap++) {
+        uint tap = 0u;
+        do {
             float side = (tap & 1u) == 0u ? 1.0 : -1.0;
             vec2 reach = tap < 2u ? vec2(reach_u * side, 0.0) : vec2(0.0, reach_v * side);
             vec2 place = raises ? uv + reach : uv;
             value = channel_value(filter_texture(texture_record, place, detail), texture_record.channel);
             height_u = tap < 2u ? height_u + value.x * side : height_u;
             height_v = tap < 2u ? height_v : height_v + value.x * side;
-        }
+            tap += 1u;
+        } while (tap < taps);
         if (raises) {
             UvGradients own = texture_gradients(texture_record, gradients);
             float rise_u = div(height_u, 2.0 * reach_u) * texture_record.scale;
@@ -56,7 +59,8 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
         } else {
             material = apply_parameter(material, texture_record.parameter, value, texture_record.scale);
         }
-    }
+        index += 1u;
+    } while (index < count);
     return material;
 }
 
@@ -65,30 +69,25 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
 // `key`: of the path, which meets one surface at most.
 Material material_at(vec3 direction, Hit hit, SampleKey key, inout Surface surface) {
     Material material = load_material(surface.material);
-#ifdef CLASSIC_MODELS
-    material.color *= surface.color;
-    return apply_textures(material, direction, hit, surface);
-#else
-    float u = 0.0;
-    if (material.model == MODEL_BLEND) {
-        u = sample_1d(key, DIMENSION_LEAF);
-    }
-    for (uint level = 0u; level < MAX_LEAVES; level++) {
+    float u = HAS_MODEL(MODEL_BLEND) && material.model == MODEL_BLEND ? sample_1d(key, DIMENSION_LEAF) : 0.0;
+    uint level = 0u;
+    bool blends = false;
+    do {
         material.color *= surface.color;
         material = apply_textures(material, direction, hit, surface);
+        level += 1u;
         // Bake lets no blend be deeper.
-        if (material.model != MODEL_BLEND || level + 1u == MAX_LEAVES) {
-            break;
+        blends = HAS_MODEL(MODEL_BLEND) && material.model == MODEL_BLEND && level < MAX_LEAVES;
+        if (blends) {
+            float weight = clamp_(material.extra, 0.0, 1.0);
+            bool second = u < weight;
+            // What is left of u is as random again.
+            u = second ? div(u, weight) : div(u - weight, 1.0 - weight);
+            surface.material = second ? material.table + 1u : material.table;
+            material = load_material(surface.material);
         }
-        float weight = clamp_(material.extra, 0.0, 1.0);
-        bool second = u < weight;
-        // What is left of u is as random again.
-        u = second ? div(u, weight) : div(u - weight, 1.0 - weight);
-        surface.material = second ? material.table + 1u : material.table;
-        material = load_material(surface.material);
-    }
+    } while (blends);
     return material;
-#endif
 }
 
 #endif

@@ -6,7 +6,7 @@ use crate::layout::{Batch, Hit, Ray, ShadowRay};
 use crate::render::RenderError;
 use crate::render::vulkan::{
     Bound, Buffer, Context, DeviceChoice, DeviceInfo, Kernel, Place, SceneBuffers, Submission, VulkanError,
-    VulkanOptions, WORKGROUP,
+    VulkanOptions, WORKGROUP, specialisation,
 };
 use crate::shaders::{self, Fetch};
 use rayon::prelude::*;
@@ -151,8 +151,7 @@ impl VulkanTracer {
         let scene = SceneBuffers::upload(&mut context, data, options.fetch, options.page_limit)?;
         let upload_s = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let mut constants = vec![(0, WORKGROUP), (5, data.stack_depth)];
-        constants.extend(scene.constants());
+        let constants = specialisation(&scene, data);
         let compile = |name: &str| {
             let words = shaders::kernel(name, scene.fetch())
                 .ok_or_else(|| VulkanError::Device(format!("this program was built without the kernel {name}")))?;

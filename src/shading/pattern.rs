@@ -80,7 +80,7 @@ pub fn fractal_noise(uv: Vec2, octaves: u32, gain: f32, seed: u32, width: f32) -
     let mut covered_width = width;
     let mut sum = 0.0;
     let mut total = 0.0;
-    let count = if octaves < OCTAVES_MOST { octaves } else { OCTAVES_MOST };
+    let count = octaves.clamp(1, OCTAVES_MOST);
     for octave in 0..count {
         // From a quarter of the wavelength on, nothing is left at a half (Nyquist's limit).
         let kept = clamp_(2.0 - 4.0 * covered_width, 0.0, 1.0);

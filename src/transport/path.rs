@@ -172,9 +172,9 @@ pub fn shade_path(
     let filtered = scene.header.shadows == SHADOWS_FILTERED;
     // How far before the ray's origin its direction was drawn.
     let mut passed = 0.0;
-    if filtered && path.depth > 0 {
-        passed = path.coverage;
-        path.coverage = 0.0;
+    if filtered {
+        passed = if path.depth > 0 { path.coverage } else { 0.0 };
+        path.coverage = if path.depth > 0 { 0.0 } else { path.coverage };
     }
     if material.k_t > 0.0 {
         let own = own_weight(material);

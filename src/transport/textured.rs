@@ -67,23 +67,23 @@ fn apply_textures(scene: &SceneView, bare: Material, direction: Vec3, hit: &Hit,
 /// `key`: of the path, which meets one surface at most.
 pub fn material_at(scene: &SceneView, direction: Vec3, hit: &Hit, key: SampleKey, surface: &mut Surface) -> Material {
     let mut material = load_material(scene, surface.material);
-    let mut u = 0.0;
-    if material.model == MODEL_BLEND {
-        u = sample_1d(key, DIMENSION_LEAF);
-    }
-    for level in 0..MAX_LEAVES {
+    let mut u = if material.model == MODEL_BLEND { sample_1d(key, DIMENSION_LEAF) } else { 0.0 };
+    let mut level = 0;
+    let mut blends = true;
+    while blends {
         material.color *= surface.color;
         material = apply_textures(scene, material, direction, hit, surface);
+        level += 1;
         // Bake lets no blend be deeper.
-        if material.model != MODEL_BLEND || level + 1 == MAX_LEAVES {
-            break;
+        blends = material.model == MODEL_BLEND && level < MAX_LEAVES;
+        if blends {
+            let weight = clamp_(material.extra, 0.0, 1.0);
+            let second = u < weight;
+            // What is left of u is as random again.
+            u = if second { div(u, weight) } else { div(u - weight, 1.0 - weight) };
+            surface.material = if second { material.table + 1 } else { material.table };
+            material = load_material(scene, surface.material);
         }
-        let weight = clamp_(material.extra, 0.0, 1.0);
-        let second = u < weight;
-        // What is left of u is as random again.
-        u = if second { div(u, weight) } else { div(u - weight, 1.0 - weight) };
-        surface.material = if second { material.table + 1 } else { material.table };
-        material = load_material(scene, surface.material);
     }
     material
 }

@@ -35,8 +35,9 @@ impl Kernel {
         constants: &[(u32, u32)],
         push_bytes: u32,
     ) -> Result<Kernel, VulkanError> {
-        let bindings =
-            reflect::bindings(words).map_err(|error| VulkanError::Device(format!("kernel {name}: {error}")))?;
+        let invalid = |error| VulkanError::Device(format!("kernel {name}: {error}"));
+        let words = &shaders::specialise(words, constants).map_err(invalid)?;
+        let bindings = reflect::bindings(words).map_err(invalid)?;
         check_limits(device, name, &bindings)?;
         // From here on `Drop` cleans up whatever was made before a failure.
         let mut inner = Inner {
@@ -50,7 +51,7 @@ impl Kernel {
         };
         inner.make_layouts()?;
         let words = shaders::with_float_controls(words, device.info().float_controls);
-        inner.make_pipeline(&words, constants)?;
+        inner.make_pipeline(&words)?;
         Ok(Kernel(Arc::new(inner)))
     }
 
@@ -125,23 +126,16 @@ impl Inner {
         Ok(())
     }
 
-    fn make_pipeline(&mut self, words: &[u32], constants: &[(u32, u32)]) -> Result<(), VulkanError> {
+    fn make_pipeline(&mut self, words: &[u32]) -> Result<(), VulkanError> {
         let raw = self.device.raw();
         let failed = || VulkanError::call(format!("cannot compile kernel {}", self.name));
         let info = vk::ShaderModuleCreateInfo::default().code(words);
         // SAFETY: our build made `words` (or a test did, through the same compiler) and `reflect` parsed them.
         let module = unsafe { raw.create_shader_module(&info, None) }.map_err(failed())?;
-        let entries: Vec<_> = (0..)
-            .zip(constants)
-            .map(|(at, (id, _))| vk::SpecializationMapEntry { constant_id: *id, offset: at * 4, size: 4 })
-            .collect();
-        let values: Vec<u8> = constants.iter().flat_map(|(_, value)| value.to_ne_bytes()).collect();
-        let specialization = vk::SpecializationInfo::default().map_entries(&entries).data(&values);
         let stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
             .module(module)
-            .name(c"main")
-            .specialization_info(&specialization);
+            .name(c"main");
         let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(self.layout);
         let start = std::time::Instant::now();
         // SAFETY: module, layout and cache are of this device; the module is not needed afterwards.

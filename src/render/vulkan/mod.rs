@@ -31,6 +31,7 @@ pub use error::VulkanError;
 pub use instance::Instance;
 pub use kernel::{Bound, Kernel, WORKGROUP};
 pub use memory::{Buffer, Place};
+pub use queues::specialisation;
 pub use record::Recorder;
 pub use reflect::{Binding, BindingKind, bindings};
 pub use renderer::{VulkanOptions, VulkanRenderer};

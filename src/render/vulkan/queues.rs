@@ -9,8 +9,8 @@ use super::record::Recorder;
 use super::scene::SceneBuffers;
 use crate::bake::SceneData;
 use crate::layout::{
-    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, INTEGRATOR_PATH, KIND_SPHERE,
-    Light, MODEL_EMISSIVE, SHADOWS_FILTERED, T_INFINITE,
+    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, KIND_SPHERE, Light,
+    T_INFINITE,
 };
 use crate::shaders;
 use glam::Vec3;
@@ -48,8 +48,16 @@ const NAMES: Stages<&str> = Stages {
     resolve: "resolve",
 };
 
-/// Specialisation constants that say what the scene uses (`shaders/kernels/bindings.glsl`).
-fn scene_constants(data: &SceneData) -> [(u32, u32); 18] {
+/// Every specialisation constant of a kernel that reads the scene (`shaders/kernels/bindings.glsl`).
+pub fn specialisation(scene: &SceneBuffers, data: &SceneData) -> Vec<(u32, u32)> {
+    let mut constants = vec![(0, WORKGROUP)];
+    constants.extend(scene.constants());
+    constants.extend(scene_constants(data));
+    constants
+}
+
+/// Those that say what the scene uses.
+fn scene_constants(data: &SceneData) -> [(u32, u32); 20] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
     let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
     let textures = data.materials.iter().any(|material| material.texture_count > 0);
@@ -72,28 +80,13 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 18] {
         (16, u32::from(data.materials.iter().any(|material| material.absorption != Vec3::ZERO))),
         (17, u32::from(facets)),
         (18, u32::from(textures)),
-        (19, u32::from(data.header.camera.lens_radius > 0.0)),
-        (20, u32::from(flaps)),
-        (21, data.header.shadows),
-        (22, data.header.nested),
+        (19, u32::from(data.instances.len() == 1)),
+        (20, data.textures.iter().fold(0, |mask, texture| mask | 1 << texture.format)),
+        (21, u32::from(data.header.camera.lens_radius > 0.0)),
+        (22, u32::from(flaps)),
+        (23, data.header.shadows),
+        (24, data.header.nested),
     ]
-}
-
-/// The kernel that shades: with paths or with trees of rays, and without the models beyond the classic ones where none of
-/// them is there. Drivers take seconds to inline and then cut away what specialisation leaves out.
-fn shade_kernel(data: &SceneData) -> &'static str {
-    let classic = data.materials.iter().all(|material| material.model <= MODEL_EMISSIVE);
-    match (data.header.integrator == INTEGRATOR_PATH, classic) {
-        (false, true) => "shade",
-        (false, false) => "shade_all",
-        (true, true) => "shade_path",
-        (true, false) => "shade_path_all",
-    }
-}
-
-/// The kernel that traces shadow rays: to anything, or on through panes.
-fn shadow_kernel(data: &SceneData) -> &'static str {
-    if data.header.shadows == SHADOWS_FILTERED { "shadow_filtered" } else { "shadow" }
 }
 
 /// The compiled kernels of a scene.
@@ -102,10 +95,8 @@ pub struct Kernels(Stages<Kernel>);
 impl Kernels {
     /// Compiles for the scene's way of fetching, its pages and what it uses, and for nothing else.
     pub fn new(context: &Context, scene: &SceneBuffers, data: &SceneData) -> Result<Kernels, VulkanError> {
-        let mut constants = vec![(0, WORKGROUP)];
-        constants.extend(scene.constants());
-        constants.extend(scene_constants(data));
-        let kernels = Stages { shade: shade_kernel(data), shadow: shadow_kernel(data), ..NAMES }.try_map(|name| {
+        let constants = specialisation(scene, data);
+        let kernels = NAMES.try_map(|name| {
             let words = shaders::kernel(name, scene.fetch())
                 .ok_or_else(|| VulkanError::Device(format!("this program was built without the kernel {name}")))?;
             context.kernel(name, words, &constants, size_of::<Batch>())
