@@ -273,6 +273,7 @@ fn lecture_intensities_are_multiplied_by_pi() {
         attenuation: Attenuation::Polynomial { c1: 1.0, c2: 0.5, c3: 0.25 },
         flaps: Flaps::NONE,
         casts_shadow: true,
+        slide: None,
     };
     scene.lights = vec![light(IntensityUnit::Lecture), light(IntensityUnit::Radiometric)];
     let lights = bake(&scene).expect("bakes").lights;

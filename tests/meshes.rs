@@ -299,6 +299,8 @@ fn own_camera_and_lights_are_kept() {
         up: Vec3::Z,
         projection: Projection::Orthographic { height: 2.0 },
         lens: None,
+        shift: Vec2::ZERO,
+        mirrored: false,
     };
     scene.camera = camera;
     staging::stage(&mut scene);

@@ -38,6 +38,7 @@ fn coarse(shading: Shading, model: Model) -> Scene {
         attenuation: Attenuation::None,
         flaps: Flaps::NONE,
         casts_shadow: true,
+        slide: None,
     });
     scene
 }

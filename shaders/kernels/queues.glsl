@@ -32,7 +32,7 @@ void push_shadow(ShadowRay shadow) {
     shadows[first + at] = shadow;
 }
 
-// Notes that a contribution was limited.
+// Notes that a contribution which reaches the film was limited.
 void count_limited() {
     atomicAdd(control.limited_count, 1u);
 }

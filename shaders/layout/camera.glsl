@@ -26,8 +26,9 @@ struct Camera {
     // The thin lens, world units: its radius, 0 for a pinhole, and how far along `forward` it shows things sharp.
     float lens_radius;
     float focus_distance;
-    uint pad1;
-    uint pad2;
+    // Added to s and t: what is seen lies off the middle of a larger picture.
+    float shift_x;
+    float shift_y;
 };
 
 #endif

@@ -95,8 +95,10 @@ struct SceneHeader {
     uint media_table;
     // 1 if media are nested by rank.
     uint nested;
-    uint pad0;
-    uint pad1;
+    // 1 if some object casts no shadow (path).
+    uint shadowless;
+    // 1 if the camera looks through what glows (path).
+    uint hide_emitters;
 };
 
 // Intervals in the tabulated filter's inverse CDF.

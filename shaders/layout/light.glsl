@@ -12,7 +12,10 @@ const uint ATTENUATION_INVERSE_SQUARE = 0u;
 const uint ATTENUATION_POLYNOMIAL = 1u;
 const uint ATTENUATION_NONE = 2u;
 
-// One light. 96 bytes.
+// Entries of the table array that describe a slide.
+const uint SLIDE_ENTRIES = 10u;
+
+// One light. 112 bytes.
 struct Light {
     vec3 position;
     // `LIGHT_*`.
@@ -37,8 +40,13 @@ struct Light {
     vec3 flaps_max;
     // 1 if the light casts shadows.
     uint casts_shadow;
+    // 1 if something stands in a spot's beam (`shading/slide`); `table` is then the first of its `SLIDE_ENTRIES`.
+    uint slide;
+    uint table;
+    uint pad0;
+    uint pad1;
 };
-const uint LIGHT_WORDS = 6u;
+const uint LIGHT_WORDS = 7u;
 
 #ifdef GONIO_FETCH
 Light load_light(uint index) {
@@ -62,6 +70,11 @@ Light load_light(uint index) {
     uvec4 w5 = fetch_data(at + 5u);
     r.flaps_max = uintBitsToFloat(w5.xyz);
     r.casts_shadow = w5.w;
+    uvec4 w6 = fetch_data(at + 6u);
+    r.slide = w6.x;
+    r.table = w6.y;
+    r.pad0 = w6.z;
+    r.pad1 = w6.w;
     return r;
 }
 #endif

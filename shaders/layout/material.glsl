@@ -26,6 +26,8 @@ const uint MODEL_MEASURED = 18u;
 const uint MODEL_NULL = 19u;
 // Two materials, one after the other from `table` on: (1 - extra) of the first and extra of the second.
 const uint MODEL_BLEND = 20u;
+// Measured for directions of light (`shading/tabulated`).
+const uint MODEL_TABULATED = 21u;
 
 // Material flag: the filtered form of non-refractive transparency, I_1 + k_t O_t I_2.
 const uint MATERIAL_FILTERED = 1u;
@@ -55,6 +57,8 @@ const uint MATERIAL_WARD_1992 = 2048u;
 const uint MATERIAL_WARD_DUER = 4096u;
 // Material flag: the model has another side: its frame's z leaves the outside, whichever side is seen.
 const uint MATERIAL_TRANSMISSIVE = 8192u;
+// Material flag: of a blend, the first material in front and the second behind.
+const uint MATERIAL_BY_SIDE = 32768u;
 // Where `MATERIAL_*` keeps `DISTRIBUTION_*` of lobe 0, two bits; lobe 1 in the two above.
 const uint DISTRIBUTION_SHIFT = 16u;
 

@@ -130,7 +130,8 @@ struct ShadowRay {
     uint dither;
     // Panes passed so far.
     uint layer;
-    uint pad0;
+    // 1 if the scene's `clamp` has limited the contribution.
+    uint limited;
 };
 const uint SHADOW_RAY_WORDS = 5u;
 
@@ -155,7 +156,7 @@ ShadowRay load_shadow_ray(uint index) {
     r.slot = w4.x;
     r.dither = w4.y;
     r.layer = w4.z;
-    r.pad0 = w4.w;
+    r.limited = w4.w;
     return r;
 }
 #endif

@@ -19,8 +19,8 @@ struct CameraRay {
 // outside the frame are fine. Perspective: all rays start at the eye. Orthographic: rays are parallel and start on
 // the image plane through the eye.
 CameraRay camera_ray(Camera camera, float film_x, float film_y) {
-    float s = film_x * camera.scale_x - 1.0;
-    float t = 1.0 - film_y * camera.scale_y;
+    float s = (film_x * camera.scale_x - 1.0) + camera.shift_x;
+    float t = (1.0 - film_y * camera.scale_y) + camera.shift_y;
     vec3 offset = camera.right * s + camera.up * t;
     if (camera.kind == CAMERA_PERSPECTIVE) {
         return CameraRay(camera.eye, normalize3(camera.forward + offset), 0.0, camera.pixel_size);

@@ -14,6 +14,7 @@ const uint DIMENSION_BSDF = 18u;
 const uint DIMENSION_LOBE = 19u;
 const uint DIMENSION_ROULETTE = 20u;
 const uint DIMENSION_PANE = 21u;
+const uint DIMENSION_LIGHT_LEAF = 22u;
 const uint DIMENSION_LEAF = 32u;
 // Dither of contributions: emission and ambient, background, alpha; light i takes `DITHER_LIGHT + i`.
 const uint DITHER_SURFACE = 0x10000000u;

@@ -15,12 +15,13 @@
 // rays are traced. A blend's material is drawn anew for each pane and light.
 void shade_shadow(ShadowRay shadow, Hit hit) {
     if (hit.instance == INVALID) {
+        if (SCENE_HAS_CLAMP && shadow.limited != 0u) count_limited();
         add_contribution(header.film_scale, shadow.slot, shadow.contribution, shadow.dither);
         return;
     }
     SampleKey key = sample_key(shadow.dither, shadow.layer, 0u);
     Surface surface = surface_at(shadow.ray, hit);
-    Material material = material_at(shadow.ray.direction, hit, key, surface);
+    Material material = material_at(shadow.ray.direction, hit, key, DIMENSION_LEAF, surface);
     ShadowRay beyond = shadow;
     beyond.contribution = spectrum_flush(shadow.contribution * pane_tint(material));
     if (spectrum_max(beyond.contribution) <= 0.0) {

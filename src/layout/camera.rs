@@ -29,6 +29,7 @@ pub struct Camera {
     /// The thin lens, world units: its radius, 0 for a pinhole, and how far along `forward` it shows things sharp.
     pub lens_radius: f32,
     pub focus_distance: f32,
-    pub _pad1: u32,
-    pub _pad2: u32,
+    /// Added to s and t: what is seen lies off the middle of a larger picture.
+    pub shift_x: f32,
+    pub shift_y: f32,
 }

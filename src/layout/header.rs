@@ -98,8 +98,10 @@ pub struct SceneHeader {
     pub media_table: u32,
     /// 1 if media are nested by rank.
     pub nested: u32,
-    pub _pad0: u32,
-    pub _pad1: u32,
+    /// 1 if some object casts no shadow (path).
+    pub shadowless: u32,
+    /// 1 if the camera looks through what glows (path).
+    pub hide_emitters: u32,
 }
 
 /// Intervals in the tabulated filter's inverse CDF.

@@ -15,7 +15,10 @@ pub const ATTENUATION_INVERSE_SQUARE: u32 = 0;
 pub const ATTENUATION_POLYNOMIAL: u32 = 1;
 pub const ATTENUATION_NONE: u32 = 2;
 
-/// One light. 96 bytes.
+/// Entries of the table array that describe a slide.
+pub const SLIDE_ENTRIES: u32 = 10;
+
+/// One light. 112 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Light {
@@ -42,6 +45,11 @@ pub struct Light {
     pub flaps_max: Vec3,
     /// 1 if the light casts shadows.
     pub casts_shadow: u32,
+    /// 1 if something stands in a spot's beam (`shading/slide`); `table` is then the first of its `SLIDE_ENTRIES`.
+    pub slide: u32,
+    pub table: u32,
+    pub _pad0: u32,
+    pub _pad1: u32,
 }
 
 impl Default for Light {

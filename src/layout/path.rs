@@ -85,5 +85,6 @@ pub struct ShadowRay {
     pub dither: u32,
     /// Panes passed so far.
     pub layer: u32,
-    pub _pad0: u32,
+    /// 1 if the scene's `clamp` has limited the contribution.
+    pub limited: u32,
 }

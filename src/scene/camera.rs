@@ -1,6 +1,6 @@
 //! The camera as written.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// How the image plane is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,4 +29,8 @@ pub struct Camera {
     pub projection: Projection,
     /// None: a pinhole, all is sharp.
     pub lens: Option<Lens>,
+    /// The picture is a part of a larger one: this many of its own widths to the right of the middle, and heights above.
+    pub shift: Vec2,
+    /// Left and right are swapped, as in a mirror.
+    pub mirrored: bool,
 }

@@ -189,11 +189,16 @@ pub enum Model {
     Null,
     /// Shown as it is, unlit.
     Emissive,
-    /// (1 - weight) a + weight b; the children may be blends again.
+    /// (1 - weight) a + weight b; the children may be blends again. What the blend itself emits adds to what they do.
     Blend {
         weight: f32,
         a: MaterialId,
         b: MaterialId,
+    },
+    /// One material in front, another behind; they may be blends.
+    Sides {
+        front: MaterialId,
+        back: MaterialId,
     },
 }
 

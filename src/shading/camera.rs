@@ -21,8 +21,8 @@ pub struct CameraRay {
 /// the image plane through the eye.
 #[inline]
 pub fn camera_ray(camera: &Camera, film_x: f32, film_y: f32) -> CameraRay {
-    let s = film_x * camera.scale_x - 1.0;
-    let t = 1.0 - film_y * camera.scale_y;
+    let s = (film_x * camera.scale_x - 1.0) + camera.shift_x;
+    let t = (1.0 - film_y * camera.scale_y) + camera.shift_y;
     let offset = camera.right * s + camera.up * t;
     if camera.kind == CAMERA_PERSPECTIVE {
         return CameraRay {
@@ -88,6 +88,15 @@ mod tests {
             let ray = camera_ray(&camera(CAMERA_PERSPECTIVE), x, y);
             assert_eq!(ray.origin, Vec3::new(1.0, 2.0, 3.0));
             assert!((ray.direction - want.normalize()).length() < 3e-7, "({x}, {y}): {ray:?}");
+        }
+    }
+
+    #[test]
+    fn a_shifted_picture_is_a_part_of_a_larger_one() {
+        for kind in [CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC] {
+            let shifted = Camera { shift_x: 0.5, shift_y: -0.25, ..camera(kind) };
+            // Half of half the width to the right and a quarter of half the height down.
+            assert_eq!(camera_ray(&shifted, 20.0, 10.0), camera_ray(&camera(kind), 30.0, 12.5));
         }
     }
 

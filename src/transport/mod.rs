@@ -31,6 +31,7 @@ pub const DIMENSION_BSDF: u32 = 18;
 pub const DIMENSION_LOBE: u32 = 19;
 pub const DIMENSION_ROULETTE: u32 = 20;
 pub const DIMENSION_PANE: u32 = 21;
+pub const DIMENSION_LIGHT_LEAF: u32 = 22;
 pub const DIMENSION_LEAF: u32 = 32;
 /// Dither of contributions: emission and ambient, background, alpha; light i takes `DITHER_LIGHT + i`.
 pub const DITHER_SURFACE: u32 = 0x1000_0000;
@@ -70,7 +71,7 @@ pub fn push_shadow(queues: &mut Queues, shadow: ShadowRay) {
     queues.shadows.push(shadow);
 }
 
-/// Notes that a contribution was limited.
+/// Notes that a contribution which reaches the film was limited.
 pub fn count_limited(queues: &mut Queues) {
     queues.limited_count += 1;
 }

@@ -2,7 +2,7 @@
 
 use super::common::{empty_scene, object};
 use super::picture;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use gonio::scene::*;
 
 /// Distance of the picture's one thing from the lens.
@@ -17,7 +17,15 @@ fn edge(lens: Option<Lens>, projection: Projection) -> Scene {
     scene.meshes = vec![shape::quad([20.0, 20.0], 1)];
     let upright = Transform::rotate(Vec3::X, std::f64::consts::FRAC_PI_2);
     scene.objects = vec![object(Geometry::Mesh(MeshId(0)), upright.then(Transform::translate(Vec3::X * 10.0)))];
-    scene.camera = Camera { eye: Vec3::Z * FAR, target: Vec3::ZERO, up: Vec3::Y, projection, lens };
+    scene.camera = Camera {
+        eye: Vec3::Z * FAR,
+        target: Vec3::ZERO,
+        up: Vec3::Y,
+        projection,
+        lens,
+        shift: Vec2::ZERO,
+        mirrored: false,
+    };
     scene
 }
 

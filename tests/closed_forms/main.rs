@@ -87,6 +87,8 @@ fn look_down(scene: &mut Scene, y: f32, height: f32) {
         up: Vec3::NEG_Z,
         projection: Projection::Orthographic { height },
         lens: None,
+        shift: glam::Vec2::ZERO,
+        mirrored: false,
     };
 }
 
@@ -99,6 +101,7 @@ fn light(kind: LightKind, intensity: f32) -> Light {
         attenuation: Attenuation::InverseSquare,
         flaps: Flaps::NONE,
         casts_shadow: true,
+        slide: None,
     }
 }
 

@@ -43,7 +43,7 @@ fn radiance(scene: &Scene, index: usize) -> f64 {
 fn a_thousand_lights_add_up_under_local_and_whitted() {
     for integrator in [Integrator::Local, Integrator::Whitted] {
         let scene = ballroom(integrator);
-        for (index, pixel) in picture(&scene).iter().enumerate() {
+        for (index, pixel) in picture(&scene).into_iter().enumerate() {
             let wanted = radiance(&scene, index);
             // A quarter unit of floor is not quite flat in brightness.
             assert!(

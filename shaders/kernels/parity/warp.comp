@@ -23,6 +23,8 @@ Camera camera() {
     c.forward = argument3(9u);
     c.lens_radius = 0.125;
     c.focus_distance = 3.0;
+    c.shift_x = 0.3;
+    c.shift_y = -0.7;
     return c;
 }
 

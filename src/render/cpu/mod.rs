@@ -9,7 +9,7 @@ use crate::transport::film::{add_fixed, clamp_sample};
 use crate::transport::generate::generate;
 use crate::transport::shade::shade;
 use crate::transport::shadow::shade_shadow;
-use crate::transport::{Queues, add_contribution};
+use crate::transport::{Queues, add_contribution, count_limited};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -94,6 +94,9 @@ fn run_sample(scene: &SceneView, batch: &Batch, slot: u32, worker: &mut Worker, 
                 shade_shadow(scene, &shadow, &trace_occluder(scene, &shadow.ray), &mut worker.queues);
             } else if !trace_any(scene, &shadow.ray) {
                 let scale = scene.header.film_scale;
+                if shadow.limited != 0 {
+                    count_limited(&mut worker.queues);
+                }
                 add_contribution(&mut worker.queues, scale, shadow.slot, shadow.contribution, shadow.dither);
             }
         }
@@ -174,10 +177,12 @@ impl Renderer for CpuRenderer<'_> {
             film.add_aovs(job.crop, &aovs, job.samples.contains(&0));
         }
         film.record(job.samples.clone(), tally.nan_count.into_inner(), tally.clamped_count.into_inner());
+        let limited = tally.limited_count.into_inner();
+        film.count_limited(limited);
         Ok(Counters {
             closest_rays: tally.closest_rays.into_inner(),
             shadow_rays: tally.shadow_rays.into_inner(),
-            limited: tally.limited_count.into_inner(),
+            limited,
             ..Counters::default()
         })
     }

@@ -57,7 +57,7 @@ pub fn specialisation(scene: &SceneBuffers, data: &SceneData) -> Vec<(u32, u32)>
 }
 
 /// Those that say what the scene uses.
-fn scene_constants(data: &SceneData) -> [(u32, u32); 20] {
+fn scene_constants(data: &SceneData) -> [(u32, u32); 24] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
     let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
     let textures = data.materials.iter().any(|material| material.texture_count > 0);
@@ -86,6 +86,10 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 20] {
         (22, u32::from(flaps)),
         (23, data.header.shadows),
         (24, data.header.nested),
+        (25, u32::from(data.lights.iter().any(|light| light.slide != 0))),
+        (26, data.header.shadowless),
+        (27, data.header.hide_emitters),
+        (28, u32::from(data.header.clamp > 0.0)),
     ]
 }
 

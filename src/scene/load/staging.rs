@@ -10,7 +10,7 @@ use crate::scene::{
     Material, MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, Shading, Shadows, ToneMap,
     Transform, shape,
 };
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -21,6 +21,8 @@ const NO_CAMERA: Camera = Camera {
     up: Vec3::Y,
     projection: Projection::Perspective { fov_y: FOV_Y },
     lens: None,
+    shift: Vec2::ZERO,
+    mirrored: false,
 };
 
 /// 30 degrees: little perspective, as in a photograph of a product.
@@ -41,6 +43,7 @@ pub fn bare_scene(path: &Path) -> Scene {
         film: Film {
             width: 1280,
             height: 720,
+            crop: None,
             // No negative lobes: sampled ones would be noise at few samples a pixel.
             filter: Filter::Gaussian { radius: 1.5, sigma: 0.5 },
             unit_exponent: 0,
@@ -57,6 +60,7 @@ pub fn bare_scene(path: &Path) -> Scene {
             min_weight: 0.003,
             rr_depth: 5,
             clamp: None,
+            hide_emitters: false,
             shadows: Shadows::Opaque,
             shading: Shading::Phong,
         },
@@ -152,6 +156,8 @@ fn camera(eye: DVec3, target: DVec3, fov_y: f32) -> Camera {
         up: Vec3::Y,
         projection: Projection::Perspective { fov_y },
         lens: None,
+        shift: Vec2::ZERO,
+        mirrored: false,
     }
 }
 
@@ -184,6 +190,7 @@ fn light(name: &str, kind: LightKind, irradiance: f32, attenuation: Attenuation,
         attenuation,
         flaps: Flaps::NONE,
         casts_shadow,
+        slide: None,
     }
 }
 

@@ -30,6 +30,7 @@ fn light(i: &In) -> Light {
         exponent: i.f(9),
         flaps_max: Vec3::new(T_INFINITE, 3.0, 2.0),
         casts_shadow: 1,
+        ..Light::default()
     }
 }
 

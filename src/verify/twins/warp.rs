@@ -42,6 +42,8 @@ fn camera(i: &In) -> Camera {
         forward: i.v3(9),
         lens_radius: 0.125,
         focus_distance: 3.0,
+        shift_x: 0.3,
+        shift_y: -0.7,
         ..Camera::default()
     }
 }

@@ -5,7 +5,7 @@ use super::{Failure, Loader, Part};
 use crate::scene::{
     Attenuation, Camera, Flaps, Geometry, IntensityUnit, Light, LightKind, Object, Projection, Rgb, Transform,
 };
-use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec3};
 use gltf::json::camera::Type as CameraType;
 use gltf::json::extensions::scene::khr_lights_punctual::Type as LightType;
 use gltf::json::validation::Checked;
@@ -256,6 +256,8 @@ impl Loader<'_> {
             up: (up / up.length()).as_vec3(),
             projection,
             lens: None,
+            shift: Vec2::ZERO,
+            mirrored: false,
         };
         self.has_camera = true;
         Ok(())
@@ -300,6 +302,7 @@ impl Loader<'_> {
             attenuation,
             flaps: Flaps::NONE,
             casts_shadow: true,
+            slide: None,
         });
         Ok(())
     }

@@ -48,6 +48,7 @@ fn read_light(table: &Reader, settings: &LightSettings, warnings: &mut Vec<Strin
         attenuation: read_attenuation(table, settings.unit)?,
         flaps: read_flaps(table)?,
         casts_shadow: table.boolean("casts_shadow")?.unwrap_or(true),
+        slide: None,
     })
 }
 

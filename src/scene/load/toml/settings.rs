@@ -11,7 +11,7 @@ use crate::scene::{
     Background, Camera, Environment, Film, Filter, Integrator, IntensityUnit, Lens, Projection, RenderSettings,
     Sampler, Shading, ToneMap,
 };
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// What `[render]` says beside `RenderSettings`.
 #[derive(Clone, Copy, Debug)]
@@ -142,6 +142,8 @@ pub fn read_camera(root: &Reader, film: &Film, base: Option<Camera>) -> Result<O
         up: table.vector("up")?.unwrap_or(base.map_or(Vec3::Y, |base| base.up)),
         projection: read_projection(&table, film, base.map(|base| base.projection))?,
         lens: None,
+        shift: base.map_or(Vec2::ZERO, |base| base.shift),
+        mirrored: base.is_some_and(|base| base.mirrored),
     };
     check_view(&table, &camera)?;
     let sharp = base.and_then(|base| base.lens);
