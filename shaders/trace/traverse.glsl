@@ -119,7 +119,7 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
     } while (walking);
 }
 
-// Tests what instance `id` holds; `hit` becomes the closer of it and what is found.
+// Tests what instance `id` holds, with `casting` only if it casts a shadow; `hit` becomes the closer of it and what is found.
 void test_instance(Ray ray, uint id, bool any, bool casting, inout Hit hit) {
     Instance record = load_instance(id);
     vec3 origin = object_origin(record, ray.origin);

@@ -10,8 +10,9 @@
 #include "trace/surface.glsl"
 #include "transport/mod.glsl"
 
-// Indices of rough glass keep this distance from 1, or no facet would refract.
-const float ETA_LEAST = 1.0e-3;
+// Indices of rough glass are not between these, or no facet would refract.
+const float ETA_BELOW = 0.999;
+const float ETA_ABOVE = 1.001;
 
 // Beer coefficient of the medium that a ray with this list is in.
 vec3 medium_absorption(uint list) {
@@ -44,8 +45,8 @@ bool meet_interface(PathState path, Surface surface, inout Material material) {
     }
     if (outer != 0u) {
         float eta = div(material.eta.x, load_table(header.media_table + 4u * (outer - 1u)));
-        if (material.model == MODEL_ROUGH_DIELECTRIC && abs(eta - 1.0) < ETA_LEAST) {
-            eta = eta < 1.0 ? 1.0 - ETA_LEAST : 1.0 + ETA_LEAST;
+        if (material.model == MODEL_ROUGH_DIELECTRIC && eta > ETA_BELOW && eta < ETA_ABOVE) {
+            eta = eta < 1.0 ? ETA_BELOW : ETA_ABOVE;
         }
         material.eta = vec3(eta);
     }

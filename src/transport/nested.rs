@@ -9,8 +9,9 @@ use crate::trace::spawn::spawn_through;
 use crate::trace::surface::Surface;
 use glam::Vec3;
 
-/// Indices of rough glass keep this distance from 1, or no facet would refract.
-const ETA_LEAST: f32 = 1.0e-3;
+/// Indices of rough glass are not between these, or no facet would refract.
+const ETA_BELOW: f32 = 0.999;
+const ETA_ABOVE: f32 = 1.001;
 
 /// Beer coefficient of the medium that a ray with this list is in.
 pub fn medium_absorption(scene: &SceneView, list: u32) -> Vec3 {
@@ -49,8 +50,8 @@ pub fn meet_interface(
     }
     if outer != 0 {
         let mut eta = div(material.eta.x, load_table(scene, scene.header.media_table + 4 * (outer - 1)));
-        if material.model == MODEL_ROUGH_DIELECTRIC && (eta - 1.0).abs() < ETA_LEAST {
-            eta = if eta < 1.0 { 1.0 - ETA_LEAST } else { 1.0 + ETA_LEAST };
+        if material.model == MODEL_ROUGH_DIELECTRIC && eta > ETA_BELOW && eta < ETA_ABOVE {
+            eta = if eta < 1.0 { ETA_BELOW } else { ETA_ABOVE };
         }
         material.eta = Vec3::splat(eta);
     }

@@ -58,7 +58,8 @@ fn a_thousand_lights_add_up_under_local_and_whitted() {
 fn paths_sample_a_thousand_lights_by_their_power() {
     let mut scene = ballroom(Integrator::Path);
     scene.settings.samples = 64;
-    let ratios = picture(&scene).into_iter().enumerate().map(|(index, pixel)| f64::from(pixel[0]) / radiance(&scene, index));
+    let pixels = picture(&scene);
+    let ratios = pixels.iter().enumerate().map(|(index, pixel)| f64::from(pixel[0]) / radiance(&scene, index));
     let found = mean_of(ratios.collect());
     assert!((found.value - 1.0).abs() < 5.0 * found.error + 1e-3, "{found:?}");
     // Ten lamps of a thousand give nearly all light: chosen evenly, the error of 16,384 samples would be 8 %.

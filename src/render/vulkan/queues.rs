@@ -9,8 +9,8 @@ use super::record::Recorder;
 use super::scene::SceneBuffers;
 use crate::bake::SceneData;
 use crate::layout::{
-    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, KIND_SPHERE,
-    Light, SHADOWS_FILTERED, T_INFINITE,
+    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, KIND_SPHERE, Light,
+    T_INFINITE,
 };
 use crate::shaders;
 use glam::Vec3;
@@ -93,11 +93,6 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 24] {
     ]
 }
 
-/// The kernel that traces shadow rays: to anything, or on through panes.
-fn shadow_kernel(data: &SceneData) -> &'static str {
-    if data.header.shadows == SHADOWS_FILTERED { "shadow_filtered" } else { "shadow" }
-}
-
 /// The compiled kernels of a scene.
 pub struct Kernels(Stages<Kernel>);
 
@@ -105,7 +100,7 @@ impl Kernels {
     /// Compiles for the scene's way of fetching, its pages and what it uses, and for nothing else.
     pub fn new(context: &Context, scene: &SceneBuffers, data: &SceneData) -> Result<Kernels, VulkanError> {
         let constants = specialisation(scene, data);
-        let kernels = Stages { shadow: shadow_kernel(data), ..NAMES }.try_map(|name| {
+        let kernels = NAMES.try_map(|name| {
             let words = shaders::kernel(name, scene.fetch())
                 .ok_or_else(|| VulkanError::Device(format!("this program was built without the kernel {name}")))?;
             context.kernel(name, words, &constants, size_of::<Batch>())

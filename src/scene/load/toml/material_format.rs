@@ -82,7 +82,7 @@ pub static MATERIAL: Section = Section {
         key("roughness_v_texture", Kind::Special(TEXTURED), "none", "Multiplies the roughness along v alone").only(ROUGH),
         key("metallic_texture", Kind::Special(TEXTURED), "none", "Multiplies `metallic`, which is 1 unless given").only(DISNEY),
         key("weight_texture", Kind::Special(TEXTURED), "none", "Multiplies `weight`, which is 1 unless given").only(&["blend"]),
-        key("opacity_texture", Kind::Special(TEXTURED), "none", "Multiplies how much of what lies behind the surface covers: black is a hole. Shadows are those of the whole surface").only(LOCAL),
+        key("opacity_texture", Kind::Special(TEXTURED), "none", "Multiplies how much of what lies behind the surface covers: black is a hole. Shadows are those of the whole surface unless they are `\"filtered\"`").only(LOCAL),
         key("normal_map", Kind::Special(TEXTURED), "none", "Turns the normal: red towards growing u, green towards growing v (up the image, as OpenGL and glTF have it), (0.5, 0.5, 1) leaves it"),
         key("bump_map", Kind::Special(TEXTURED), "none", "Heights by which the normal is turned as if the surface were raised"),
         key("k_a", Kind::Number(Range::NOT_NEGATIVE), "1", "Weight of the ambient term").only(LOCAL),
@@ -127,7 +127,7 @@ pub static MATERIAL: Section = Section {
         key("opacity", Kind::Number(Range::UNIT), "1", "Coverage: the rest lets everything through").only(LOCAL),
         key("emission_two_sided", Kind::Boolean, "true", "The back emits like the front, else it does not").only(LOCAL),
         key("two_sided", Kind::Boolean, "true", "The back is shaded like the front, else it is black").only(LOCAL),
-        key("casts_shadow", Kind::Boolean, "false with `k_t` > 0, else true", "Whether it stops shadow rays"),
+        key("casts_shadow", Kind::Boolean, "false with `k_t` > 0 unless `render.shadows` is `\"filtered\"`, else true", "Whether it stops shadow rays"),
     ],
 };
 
