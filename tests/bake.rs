@@ -271,7 +271,9 @@ fn lecture_intensities_are_multiplied_by_pi() {
         intensity: Vec3::new(1.0, 2.0, 4.0),
         unit,
         attenuation: Attenuation::Polynomial { c1: 1.0, c2: 0.5, c3: 0.25 },
+        flaps: Flaps::NONE,
         casts_shadow: true,
+        slide: None,
     };
     scene.lights = vec![light(IntensityUnit::Lecture), light(IntensityUnit::Radiometric)];
     let lights = bake(&scene).expect("bakes").lights;

@@ -193,7 +193,9 @@ fn crowd() -> SceneData {
         intensity: Rgb::ONE,
         unit: IntensityUnit::Radiometric,
         attenuation: Attenuation::InverseSquare,
+        flaps: Flaps::NONE,
         casts_shadow: true,
+        slide: None,
     };
     scene.lights = vec![
         light(LightKind::Point { position: Vec3::Y }),
@@ -286,7 +288,7 @@ fn the_density_of_a_light_sample_is_that_of_a_ray_that_meets_the_light() {
                     continue;
                 }
                 let surface = reached(&data, emitter, position, lit.wi, lit.distance);
-                let density = pdf_emitter(&scene, position, lit.wi, lit.distance, &surface);
+                let density = pdf_emitter(&scene, position, lit.wi, lit.distance, &surface, surface.material);
                 // Grazing light amplifies the rounding of the point.
                 assert!(
                     (density / lit.pdf_solid_angle - 1.0).abs() < 1.0e-3,

@@ -121,3 +121,26 @@ fn a_light_on_the_surface_or_out_of_reach_gives_nothing() {
         }
     }
 }
+
+#[test]
+fn flaps_keep_the_light_between_their_planes() {
+    for kind in [LIGHT_POINT, LIGHT_DIRECTIONAL, LIGHT_SPOT] {
+        let open = Light { cos_outer: -1.0, cos_inner: -1.0, attenuation: ATTENUATION_NONE, kind, ..lamp() };
+        let flaps =
+            Light { flaps_min: Vec3::new(-1.0, -T_INFINITE, 0.5), flaps_max: Vec3::new(2.0, 3.0, T_INFINITE), ..open };
+        for (position, lit) in [
+            (Vec3::new(0.0, 0.0, 1.0), true),
+            // On the planes themselves.
+            (Vec3::new(-1.0, 3.0, 0.5), true),
+            (Vec3::new(2.0, -900.0, 900.0), true),
+            (Vec3::new(-1.001, 0.0, 1.0), false),
+            (Vec3::new(2.001, 0.0, 1.0), false),
+            (Vec3::new(0.0, 3.001, 1.0), false),
+            (Vec3::new(0.0, 0.0, 0.499), false),
+        ] {
+            let wanted = if lit { sample_light(&open, position).radiance } else { [0.0; 4].into() };
+            assert_eq!(sample_light(&flaps, position).radiance, wanted, "kind {kind} at {position}");
+            assert!(!lit || wanted.x > 0.0, "kind {kind} at {position}");
+        }
+    }
+}

@@ -19,6 +19,7 @@ use gonio::shading::texture::{Detail, filter_texture, texture_detail};
 use gonio::trace::surface::{Surface, surface_at};
 use gonio::trace::tangent::{gradients_at, sphere_tangents};
 use gonio::trace::traverse::trace_closest;
+use gonio::transport::DIMENSION_LEAF;
 use gonio::transport::textured::material_at;
 use std::sync::Arc;
 
@@ -57,7 +58,7 @@ fn seen(data: &SceneData, ray: &Ray) -> (Record, Surface, Surface) {
     assert_ne!(hit.instance, INVALID, "missed");
     let before = surface_at(&view, ray, &hit);
     let mut surface = before;
-    let material = material_at(&view, ray.direction, &hit, key(0), &mut surface);
+    let material = material_at(&view, ray.direction, &hit, key(0), DIMENSION_LEAF, &mut surface);
     (material, surface, before)
 }
 
@@ -83,7 +84,7 @@ fn a_texture_on_the_weight_of_a_blend_chooses_its_materials() {
         let hit = trace_closest(&view, &ray);
         let seconds = (0..4000).filter(|&index| {
             let mut surface = surface_at(&view, &ray, &hit);
-            let material = material_at(&view, ray.direction, &hit, key(index), &mut surface);
+            let material = material_at(&view, ray.direction, &hit, key(index), DIMENSION_LEAF, &mut surface);
             assert_eq!(data.materials[surface.material as usize].color, material.color);
             material.color.x == 0.75
         });

@@ -15,6 +15,7 @@ use gonio::shading::material::{eval_material, pdf_material, sample_material};
 use gonio::shading::sampling::SampleKey;
 use gonio::trace::surface::surface_at;
 use gonio::trace::traverse::trace_closest;
+use gonio::transport::DIMENSION_LEAF;
 use gonio::transport::textured::material_at;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 use std::fs;
@@ -148,7 +149,7 @@ fn paths_meet_the_materials_of_a_blend_by_their_shares() {
     let met = |material: u32, key: SampleKey| {
         let mut surface = surface_at(&view, &ray, &hit);
         surface.material = material;
-        material_at(&view, ray.direction, &hit, key, &mut surface).color.x
+        material_at(&view, ray.direction, &hit, key, DIMENSION_LEAF, &mut surface).color.x
     };
     let mut counts = [0u32; 3];
     let samples = 40_000;
@@ -259,7 +260,7 @@ fn a_merl_file_is_scaled_and_marks_what_is_below_the_horizon() {
     }
     fs::write(folder.path().join("a.binary"), &bytes).expect("writable");
     let scene = try_read(folder.path(), "model = \"measured\"\nfile = \"a.binary\"").unwrap_or_else(|e| panic!("{e}"));
-    let Table::Merl { values } = &scene.tables[0];
+    let Table::Merl { values } = &scene.tables[0] else { panic!("a MERL table") };
     assert_eq!(values.len(), 3 * plane);
     for channel in 0..3 {
         assert!((values[channel * plane] - (channel + 1) as f32 * std::f32::consts::FRAC_1_PI).abs() < 1e-6);

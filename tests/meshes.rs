@@ -188,7 +188,7 @@ fn staged(mesh: Mesh, transform: Transform) -> Scene {
 
 /// Where `p` is seen: right and up, -1 to 1 within the frame.
 fn on_film(scene: &Scene, p: DVec3) -> [f64; 2] {
-    let Camera { eye, target, up, projection } = scene.camera;
+    let Camera { eye, target, up, projection, .. } = scene.camera;
     let Projection::Perspective { fov_y } = projection else { panic!("perspective") };
     let forward = (target.as_dvec3() - eye.as_dvec3()).normalize();
     let right = forward.cross(up.as_dvec3()).normalize();
@@ -293,8 +293,15 @@ fn room_whose_walls_have_an_outside_is_seen_from_inside_and_a_trough_from_outsid
 #[test]
 fn own_camera_and_lights_are_kept() {
     let mut scene = staging::bare_scene(Path::new("own.gltf"));
-    let camera =
-        Camera { eye: Vec3::X, target: Vec3::Y, up: Vec3::Z, projection: Projection::Orthographic { height: 2.0 } };
+    let camera = Camera {
+        eye: Vec3::X,
+        target: Vec3::Y,
+        up: Vec3::Z,
+        projection: Projection::Orthographic { height: 2.0 },
+        lens: None,
+        shift: Vec2::ZERO,
+        mirrored: false,
+    };
     scene.camera = camera;
     staging::stage(&mut scene);
     assert_eq!(scene.camera, camera);

@@ -2,6 +2,8 @@
 
 #[path = "mitsuba/meaning.rs"]
 mod meaning;
+#[path = "mitsuba/published.rs"]
+mod published;
 #[path = "mitsuba/references.rs"]
 mod references;
 #[path = "mitsuba/refused.rs"]

@@ -6,8 +6,10 @@ mod device;
 mod scenes;
 
 use gonio::bake::{SceneData, bake};
+use gonio::film::Film;
 use gonio::render::cpu::CpuRenderer;
 use gonio::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
+use gonio::render::{Job, Renderer, Watch};
 use gonio::scene::Scene;
 use gonio::scene::load::{self, Panels};
 use scenes::{Take, assert_same, prepare, render, render_cpu, taken};
@@ -163,26 +165,88 @@ fn another_seed_is_another_picture() {
     assert_same(&render_cpu(&scene, &data), &render_cpu(&other_scene, &other_data), "two seeds");
 }
 
-#[test]
-fn paths_of_any_length_are_the_same_on_cpu_and_device() {
-    let cornell = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell.toml");
-    let evening = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/evening.toml");
-    for (path, samples, max_depth, rr_depth) in
-        [(&cornell, 1, 64, 65), (&cornell, 4, 64, 5), (&cornell, 16, 2, 0), (&evening, 4, 64, 65), (&evening, 16, 1, 5)]
-    {
-        let mut scene = gonio::scene::load::load(path, &[]).unwrap();
-        (scene.film.width, scene.film.height) = (29, 23);
-        let settings = &mut scene.settings;
-        (settings.samples, settings.max_depth, settings.rr_depth) = (samples, max_depth, rr_depth);
-        settings.clamp = Some(20.0);
-        let data = gonio::bake::bake(&scene).unwrap();
-        let reference = render_cpu(&scene, &data);
-        for fetch in [FetchChoice::Texel, FetchChoice::Storage] {
-            // Chunks smaller than the picture put rays of all depths into one queue.
-            let options = VulkanOptions { fetch, chunk: Some(200), ..VulkanOptions::default() };
-            let Some(mut renderer) = vulkan(&data, options) else { return };
-            let film = render(&mut *renderer, &scene, &data, 0..samples);
-            assert_same(&reference, &film, &format!("{} {samples} {max_depth} {fetch:?}", path.display()));
+/// Adds samples of the whole frame to a film.
+fn accumulate(renderer: &mut dyn Renderer, film: &mut Film, samples: std::ops::Range<u32>) {
+    let abort = std::sync::atomic::AtomicBool::new(false);
+    let job = Job { crop: film.crop(), samples };
+    renderer.accumulate(&job, film, &Watch { abort: &abort, advance: &|_| {} }).unwrap();
+}
+
+/// Compares the scene after 1, 4 and 16 samples, through both fetch paths; false without a device.
+fn assert_path_parity(scene: &Scene, what: &str) -> bool {
+    const PARTS: [std::ops::Range<u32>; 3] = [0..1, 1..4, 4..16];
+    let data = gonio::bake::bake(scene).unwrap();
+    let mut film = scenes::film(scene, &data);
+    let mut cpu = CpuRenderer::new(&data, None).unwrap();
+    let references = PARTS.map(|part| {
+        accumulate(&mut cpu, &mut film, part);
+        film.clone()
+    });
+    for fetch in [FetchChoice::Texel, FetchChoice::Storage] {
+        // Chunks smaller than the picture put rays of all depths into one queue.
+        let options = VulkanOptions { fetch, chunk: Some(200), ..VulkanOptions::default() };
+        let Some(mut renderer) = vulkan(&data, options) else { return false };
+        let mut film = scenes::film(scene, &data);
+        for (part, reference) in PARTS.into_iter().zip(&references) {
+            let what = format!("{what}, {} samples, {fetch:?}", part.end);
+            accumulate(&mut *renderer, &mut film, part);
+            assert_same(reference, &film, &what);
+            assert_eq!(film.limited_count(), reference.limited_count(), "{what}");
         }
     }
+    true
+}
+
+#[test]
+fn paths_of_any_length_are_the_same_on_cpu_and_device() {
+    for (name, rr_depth) in [("cornell", 5), ("evening", 65)] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.toml"));
+        let mut scene = gonio::scene::load::load(&path, &[]).unwrap();
+        (scene.film.width, scene.film.height) = (29, 23);
+        (scene.settings.max_depth, scene.settings.rr_depth, scene.settings.clamp) = (64, rr_depth, Some(2.0));
+        if !assert_path_parity(&scene, name) {
+            return;
+        }
+    }
+}
+
+/// Slides in spots, a blend that glows, holes in a blend, sides, a mirrored and shifted camera.
+const MITSUBA: &str = r#"<scene version="3.0.0">
+<integrator type="path"><integer name="max_depth" value="7"/></integrator>
+<sensor type="perspective">
+  <float name="principal_point_offset_x" value="0.05"/>
+  <transform name="to_world"><scale x="-1"/><lookat origin="0, 2, 5" target="0, 0.5, 0" up="0, 1, 0"/></transform>
+  <film type="hdrfilm"><integer name="width" value="29"/><integer name="height" value="23"/></film>
+</sensor>
+<shape type="rectangle"><transform name="to_world"><scale value="4"/><rotate x="1" angle="-90"/></transform>
+  <bsdf type="twosided"><bsdf type="diffuse"/><bsdf type="conductor"/></bsdf></shape>
+<shape type="sphere"><point name="center" value="-1, 0.7, 0"/><float name="radius" value="0.7"/>
+  <bsdf type="mask"><float name="opacity" value="0.6"/><bsdf type="blendbsdf">
+    <texture name="weight" type="checkerboard"><transform name="to_uv"><scale value="4"/></transform></texture>
+    <bsdf type="roughplastic"/><bsdf type="roughconductor"/></bsdf></bsdf></shape>
+<shape type="cube"><transform name="to_world"><scale value="0.4"/><translate x="1" y="0.5"/></transform>
+  <bsdf type="blendbsdf"><float name="weight" value="0.3"/><bsdf type="diffuse"/><bsdf type="dielectric"/></bsdf>
+  <emitter type="area"><texture type="checkerboard" name="radiance"><rgb name="color0" value="1"/></texture></emitter></shape>
+<emitter type="spot"><transform name="to_world"><lookat origin="0, 4, 1" target="0, 0, 0" up="0, 0, 1"/></transform>
+  <rgb name="intensity" value="9, 8, 7"/><float name="cutoff_angle" value="30"/>
+  <texture name="texture" type="checkerboard"><rgb name="color0" value="0.9, 0.1, 0.2"/></texture></emitter>
+<emitter type="projector"><transform name="to_world"><lookat origin="3, 4, 1" target="0, 0, 0" up="0, 0, 1"/></transform>
+  <float name="fov" value="50"/><float name="scale" value="4"/>
+  <texture name="irradiance" type="checkerboard"><transform name="to_uv"><scale value="3"/></transform></texture></emitter>
+</scene>"#;
+
+#[test]
+fn what_mitsuba_scenes_bring_is_the_same_on_cpu_and_device() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.xml");
+    std::fs::write(&path, MITSUBA).unwrap();
+    let mut scene = gonio::scene::load::load(&path, &[]).unwrap();
+    scene.settings.clamp = Some(3.0);
+    assert_path_parity(&scene, "mitsuba");
+    // The lights of no size through the other integrators' loop.
+    (scene.settings.integrator, scene.settings.samples) = (gonio::scene::Integrator::Whitted, 2);
+    let data = gonio::bake::bake(&scene).unwrap();
+    let Some(mut renderer) = vulkan(&data, VulkanOptions::default()) else { return };
+    let film = render(&mut *renderer, &scene, &data, 0..2);
+    assert_same(&render_cpu(&scene, &data), &film, "mitsuba, whitted");
 }

@@ -6,7 +6,7 @@ mod common;
 mod scenes;
 
 use common::{empty_scene, globe, object};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use gonio::bake::{SceneData, bake};
 use gonio::scene::*;
 use scenes::render_cpu;
@@ -165,6 +165,9 @@ fn lit_floor(light: Option<(Object, Material)>, max_depth: u32) -> Scene {
         target: Vec3::ZERO,
         up: Vec3::Z,
         projection: Projection::Orthographic { height: 2.0 },
+        lens: None,
+        shift: Vec2::ZERO,
+        mirrored: false,
     };
     scene
 }
@@ -209,7 +212,9 @@ fn lamp(kind: LightKind, intensity: f32) -> Light {
         intensity: Rgb::splat(intensity),
         unit: IntensityUnit::Radiometric,
         attenuation: Attenuation::InverseSquare,
+        flaps: Flaps::NONE,
         casts_shadow: true,
+        slide: None,
     }
 }
 
@@ -351,6 +356,7 @@ fn a_clamp_limits_scattered_light_only_and_is_counted() {
     let watch = Watch { abort: &abort, advance: &|_| {} };
     let counters = CpuRenderer::new(&data, None).unwrap().accumulate(&job, &mut film, &watch).unwrap();
     assert!(counters.limited > 0);
+    assert_eq!(film.limited_count(), counters.limited, "the film keeps what was counted");
     // Two contributions a sample at most: the light's and the surface's.
     assert!(film.resolve().pixels.iter().all(|pixel| pixel[1] <= 0.02 + 1.0e-6) && free.value > 0.03, "{free:?}");
     scene.camera.target = Vec3::Y * 3.0;
@@ -358,4 +364,78 @@ fn a_clamp_limits_scattered_light_only_and_is_counted() {
     scene.camera.up = Vec3::Y;
     scene.camera.projection = Projection::Orthographic { height: 0.1 };
     assert_mean(mean(&scene), 2.0, "the lamp itself, seen directly");
+}
+
+#[test]
+fn a_clamp_counts_only_what_reaches_the_film() {
+    use gonio::render::{Job, Renderer, Watch, cpu::CpuRenderer};
+    // A point light that everything would limit, behind a wall: nothing of it is seen.
+    let mut scene = lit_floor(None, 1);
+    scene.lights = vec![lamp(LightKind::Point { position: Vec3::Y * 3.0 }, 50.0)];
+    scene.settings.clamp = Some(0.01);
+    let limited = |scene: &Scene| {
+        let data = bake(scene).unwrap();
+        let mut film = scenes::film(scene, &data);
+        let abort = std::sync::atomic::AtomicBool::new(false);
+        let (job, watch) = (Job { crop: film.crop(), samples: 0..4 }, Watch { abort: &abort, advance: &|_| {} });
+        CpuRenderer::new(&data, None).unwrap().accumulate(&job, &mut film, &watch).unwrap();
+        film.limited_count()
+    };
+    assert_eq!(limited(&scene), 4 * 400, "each sample's only contribution");
+    scene.objects.push(object(Geometry::Mesh(MeshId(0)), Transform::translate(Vec3::Y * 2.0)));
+    assert_eq!(limited(&scene), 0, "in the shadow");
+    scene.lights[0].casts_shadow = false;
+    assert_eq!(limited(&scene), 4 * 400, "without shadows");
+}
+
+/// A blend of materials 1 and 2 (`lit_floor`'s lamp shows it).
+fn blended(weight: f32, a: Material, b: Material) -> Scene {
+    let light = object(Geometry::Sphere, Transform::scale(Vec3::splat(0.5)).then(Transform::translate(Vec3::Y * 2.0)));
+    let blend = Model::Blend { weight, a: MaterialId(2), b: MaterialId(3) };
+    let mut scene = lit_floor(Some((light, Material { model: blend, ..matte(0.0) })), 1);
+    scene.materials.extend([a, b]);
+    scene
+}
+
+#[test]
+fn what_a_blend_emits_is_sampled_and_is_the_mean_of_its_parts() {
+    let light = object(Geometry::Sphere, Transform::scale(Vec3::splat(0.5)).then(Transform::translate(Vec3::Y * 2.0)));
+    let plain = mean(&lit_floor(Some((light, glow(2.0))), 1));
+    let parts = blended(0.25, glow(1.0), glow(5.0));
+    assert_eq!(bake(&parts).unwrap().header.emitter_count, 1);
+    assert_equal_means(plain, mean(&parts), 0.0, "3/4 of 1 and 1/4 of 5");
+    // The blend's own, as of a lamp of two materials.
+    let mut own = blended(0.5, matte(0.2), matte(0.8));
+    own.materials[1].emission = Rgb::splat(2.0);
+    assert_equal_means(plain, mean(&own), 0.0, "the blend's own");
+    // As much noise as of a plain lamp: found by sampling, not by chance.
+    assert!(mean(&parts).error < 3.0 * plain.error, "{:?} {plain:?}", mean(&parts));
+    // A blend lights a blend: the parts of the two are drawn independently.
+    let mut floor = blended(0.5, glow(0.0), glow(4.0));
+    floor.materials.extend([matte(0.2), matte(1.0)]);
+    floor.materials[0].model = Model::Blend { weight: 0.5, a: MaterialId(4), b: MaterialId(5) };
+    assert_equal_means(plain, mean(&floor), 0.0, "a floor of .2 and 1 under a lamp of 0 and 4");
+}
+
+#[test]
+fn sides_have_a_material_each_and_holes_in_a_blend_are_holes_in_its_parts() {
+    let mut scene = lit_floor(None, 0);
+    scene.materials.extend([glow(1.0), glow(3.0)]);
+    scene.materials[0].model = Model::Sides { front: MaterialId(2), back: MaterialId(3) };
+    assert_mean(mean(&scene), 1.0, "from above, where the floor's front is");
+    scene.camera.eye.y = -1.0;
+    assert_mean(mean(&scene), 3.0, "from below");
+    scene.camera.eye.y = 1.0;
+    scene.background = Background::flat(Rgb::splat(9.0));
+    scene.materials[0].opacity = 0.25;
+    assert_mean(mean(&scene), 0.25 * 1.0 + 0.75 * 9.0, "three quarters are hole");
+    scene.materials[2].opacity = 0.5;
+    assert_mean(mean(&scene), 0.125 * 1.0 + 0.875 * 9.0, "and half of what is left");
+}
+
+#[test]
+fn glass_has_no_back_that_could_be_black() {
+    let mut scene = furnace(model(Model::Dielectric { eta: 1.5, absorption: Rgb::ZERO }));
+    scene.materials[0].two_sided = false;
+    assert_mean(mean(&scene), 1.0, "one-sided glass");
 }

@@ -33,7 +33,7 @@ fn the_highlight_curves_are_powers_of_the_cosine() {
 #[test]
 fn the_distributions_are_normalised_as_their_note_says() {
     let figure = curves::distribution_figure(&FACETS, &[0.1, 0.4]);
-    assert_eq!(figure.curves.len(), 6);
+    assert_eq!(figure.curves.len(), 2 * FACETS.len());
     // LECTURE.md: Beckmann, alpha .1: D(0) = 31.8309879.
     assert!((value_at(&figure.curves[0], 0.0) - 31.8309879).abs() < 1e-3);
     for curve in &figure.curves {
@@ -85,6 +85,12 @@ fn fresnel_curves_have_the_lectures_values() {
     let Frame::Ramp { strips, .. } = curves::ramp_figure(&[copper]).frame else { panic!("a ramp") };
     let [first, last] = [strips[0].colors[0], strips[0].colors[179]];
     assert!(first[0] > first[1] && first[1] > first[2] && last.iter().all(|c| *c > 245), "{first:?} {last:?}");
+    // The 1982 paper's colours: the same at both ends, between them on the way to white by a common share.
+    let early = &strips[1].colors;
+    assert!(first.iter().zip(early[0]).all(|(a, b)| a.abs_diff(b) <= 1), "{first:?} {:?}", early[0]);
+    // A quarter of a degree before the end it is not all the way yet.
+    assert!(early[179].iter().all(|c| *c > 230), "{:?}", early[179]);
+    assert!(early.windows(2).all(|pair| (0..3).all(|c| pair[1][c] >= pair[0][c])), "never darker");
 }
 
 #[test]
@@ -289,6 +295,7 @@ fn wrong_plots_are_refused_with_what_was_meant() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
     std::fs::write(folder.path().join("bad.toml"), "[camra]\n").unwrap();
+    std::fs::write(folder.path().join("bad.brdf"), "gonio-brdf 1\nlight 3\ndata text\n").unwrap();
     let cases: &[(&[&str], i32, &str)] = &[
         (&["plot", "lobs"], 2, "'lobe'"),
         (&["plot"], 2, "Usage"),
@@ -302,6 +309,16 @@ fn wrong_plots_are_refused_with_what_was_meant() {
         (&["plot", "edge", "-o", "none/a.svg"], 74, "none/a.svg"),
         (&["plot", "fresnel", "--metal", "Fe"], 2, "allowed: Cu, Au, Ag, Al, Cr"),
         (&["plot", "d", "--distribution", "ggx"], 2, "allowed: beckmann"),
+        (&["plot", "albedo", "--against", "colour"], 2, "angle, roughness"),
+        (&["plot", "albedo", "scene.toml", "--against", "roughness"], 2, "none of the materials has a roughness"),
+        (&["plot", "fit"], 2, "Usage"),
+        (&["plot", "fit", "none.binary"], 74, "none.binary"),
+        (&["plot", "fit", "bad.toml"], 65, "did you mean \"camera\"?"),
+        (&["plot", "fit", "scene.toml"], 2, "no measured material"),
+        (&["plot", "fit", "scene.toml", "--material", "bras"], 2, "did you mean \"brass\"?"),
+        (&["plot", "fit", "bad.brdf"], 65, "bad.brdf:2:1: unknown key \"light\""),
+        (&["plot", "fit", "bad.brdf", "--material", "brass"], 2, "this is a table"),
+        (&["plot", "fit", "scene.toml", "--model", "blinn"], 2, "allowed: ward, phong, cook-torrance"),
         (&["plot", "tone", "--size", "100x100"], 2, "240x180"),
         (&["render", "--gallery", "."], 2, "--output"),
         (&["render", "--gallery", "none", "-o", "out"], 74, "none"),
@@ -314,7 +331,7 @@ fn wrong_plots_are_refused_with_what_was_meant() {
     let mut left: Vec<String> =
         std::fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
     left.sort();
-    assert_eq!(left, ["bad.toml", "scene.toml"]);
+    assert_eq!(left, ["bad.brdf", "bad.toml", "scene.toml"]);
 }
 
 #[test]

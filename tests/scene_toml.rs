@@ -101,7 +101,8 @@ fn a_scene_without_settings_has_the_documented_defaults() {
         min_weight: 0.003,
         rr_depth: 5,
         clamp: None,
-        shadows: true,
+        hide_emitters: false,
+        shadows: Shadows::Opaque,
         shading: Shading::Phong,
     };
     assert_eq!(scene.settings, settings);
@@ -131,7 +132,8 @@ fn render_film_and_background_keys_arrive() {
         min_weight: 0.5,
         rr_depth: 2,
         clamp: Some(10.0),
-        shadows: false,
+        hide_emitters: false,
+        shadows: Shadows::Off,
         shading: Shading::Gouraud,
     };
     assert_eq!(scene.settings, settings);
@@ -139,6 +141,7 @@ fn render_film_and_background_keys_arrive() {
     let film = Film {
         width: 3,
         height: 2,
+        crop: None,
         filter: Filter::Gaussian { radius: 2.5, sigma: 0.5 },
         unit_exponent: -2,
         tonemap: ToneMap::Reinhard,
@@ -251,6 +254,29 @@ fn lights_have_unit_directions_and_the_unit_of_the_scene() {
         (lamp.unit, light("type = \"point\"\nposition = [1, 2, 3]").attenuation),
         (IntensityUnit::Radiometric, Attenuation::InverseSquare)
     );
+}
+
+#[test]
+fn flaps_lens_filtered_shadows_and_priorities_arrive() {
+    assert_eq!(light("type = \"point\"\nposition = [1, 2, 3]").flaps, Flaps::NONE);
+    let flaps = light("type = \"point\"\nposition = [1, 2, 3]\nflaps_x = [-1, 2]\nflaps_z = [0.5, 0.5]").flaps;
+    assert_eq!(flaps.min, Vec3::new(-1.0, f32::NEG_INFINITY, 0.5));
+    assert_eq!(flaps.max, Vec3::new(2.0, f32::INFINITY, 0.5));
+
+    assert_eq!(read(LEAST, &[]).camera.lens, None);
+    let lens = |keys: &[&str]| read(LEAST, keys).camera.lens.expect("a lens");
+    let at_target = lens(&["camera.lens_radius=0.25", "camera.target=[0, 3, 1]"]);
+    assert_eq!(at_target, Lens { radius: 0.25, focus_distance: 5.0 });
+    let nearer = lens(&["camera.lens_radius=0.25", "camera.focus_distance=2"]);
+    assert_eq!(nearer, Lens { radius: 0.25, focus_distance: 2.0 });
+
+    let shadows = |word: &str| read(LEAST, &[&format!("render.shadows={word}")]).settings.shadows;
+    assert_eq!(
+        [shadows("true"), shadows("false"), shadows("\"filtered\"")],
+        [Shadows::Opaque, Shadows::Off, Shadows::Filtered]
+    );
+    assert_eq!(material("model = \"dielectric\"\npriority = 3").priority, Some(3));
+    assert_eq!(material("model = \"dielectric\"").priority, None);
 }
 
 #[test]
@@ -424,4 +450,24 @@ fn a_bare_mesh_takes_overrides_of_render_film_and_camera_only() {
     assert!(error.contains("the scene has no [[material]]"), "{error}");
     let error = load(&file, &set(&["background.color=red"])).expect_err("not for meshes").to_string();
     assert!(error.contains("can only be set in a TOML scene"), "{error}");
+}
+
+#[test]
+fn flaps_lenses_shadows_and_priorities_out_of_range_are_refused() {
+    let refuses = |text: String, expected: &str| {
+        let message = try_read(&text, &[]).expect_err(&text).to_string();
+        assert!(message.ends_with(expected), "{message}\nfor:\n{text}");
+    };
+    let light = |keys: &str| format!("{LEAST}[[light]]\ntype = \"point\"\nposition = [0, 0, 0]\n{keys}\n");
+    refuses(light("flaps_y = [1, 0]"), "a.toml:9:11: \"flaps_y\" = [1, 0] has its smaller number last");
+    refuses(
+        light("flaps_y = [1, 2, 3]"),
+        "9:11: \"flaps_y\" must be two numbers [min, max], found an array of 3",
+    );
+    let expected = "a.toml:2:18: \"focus_distance\" has no meaning without a \"lens_radius\" above 0";
+    refuses(LEAST.replace("[camera]\n", "[camera]\nfocus_distance = 2\n"), expected);
+    let expected = "a.toml:7:11: \"shadows\" must be true, false or \"filtered\", found \"soft\"";
+    refuses(format!("{LEAST}[render]\nshadows = \"soft\"\n"), expected);
+    let glass = format!("{LEAST}[[material]]\nname = \"a\"\nmodel = \"dielectric\"\npriority = 256\n");
+    refuses(glass, "a.toml:9:12: \"priority\" must be an integer from 0 to 255, found 256");
 }

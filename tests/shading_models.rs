@@ -27,7 +27,7 @@ fn coarse(shading: Shading, model: Model) -> Scene {
     scene.materials[0] = Material { model, color: Rgb::ONE, k_d: weights.0, k_s: weights.1, ..Material::grey("m") };
     scene.settings.integrator = Integrator::Local;
     scene.settings.shading = shading;
-    scene.settings.shadows = false;
+    scene.settings.shadows = Shadows::Off;
     scene.settings.samples = 1;
     scene.camera.projection = Projection::Perspective { fov_y: 0.45 };
     scene.lights.push(Light {
@@ -36,7 +36,9 @@ fn coarse(shading: Shading, model: Model) -> Scene {
         intensity: Rgb::ONE,
         unit: IntensityUnit::Lecture,
         attenuation: Attenuation::None,
+        flaps: Flaps::NONE,
         casts_shadow: true,
+        slide: None,
     });
     scene
 }
@@ -145,7 +147,7 @@ fn a_corner_in_shadow_darkens_its_share_of_the_triangle() {
     };
     let shadowed = {
         let mut scene = lit.clone();
-        scene.settings.shadows = true;
+        scene.settings.shadows = Shadows::Opaque;
         scene
     };
     let full = LIGHT.z;
@@ -181,7 +183,7 @@ fn corners_of_a_closed_mesh_do_not_shadow_themselves() {
         };
         hits(&scene).into_iter().filter(move |(bounce, _)| clear(bounce.hit.primitive)).collect::<Vec<_>>()
     };
-    let (with, without) = (shadowed(true), shadowed(false));
+    let (with, without) = (shadowed(Shadows::Opaque), shadowed(Shadows::Off));
     assert!(with.len() > 80, "{}", with.len());
     for ((bounce, a), (_, b)) in with.iter().zip(&without) {
         assert!((a - b).abs() < STEP, "{bounce:?}: {a} {b}");
@@ -224,7 +226,7 @@ fn every_shading_is_the_same_on_cpu_and_device() {
     for shading in [Shading::Flat, Shading::Gouraud, Shading::Phong] {
         for projection in [Projection::Perspective { fov_y: 0.5 }, Projection::Orthographic { height: 2.4 }] {
             let mut scene = coarse(shading, Model::Phong { exponent: 9.0, lafortune: Some(false) });
-            scene.settings.shadows = true;
+            scene.settings.shadows = Shadows::Opaque;
             scene.settings.samples = 2;
             scene.camera.projection = projection;
             scene.ambient = Rgb::new(0.1, 0.2, 0.3);

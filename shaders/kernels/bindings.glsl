@@ -45,6 +45,22 @@ layout(constant_id = 19) const bool SCENE_IS_ONE_INSTANCE = false;
 layout(constant_id = 20) const uint FORMATS_PRESENT = 0xffffffffu;
 // Whether there is a format of the mask. Not `a || b` of two: that is control flow, even among constants.
 #define HAS_FORMATS(mask) ((FORMATS_PRESENT & (mask)) != 0u)
+layout(constant_id = 21) const bool SCENE_HAS_LENS = true;
+// Lights with flaps.
+layout(constant_id = 22) const bool SCENE_HAS_FLAPS = true;
+#define HAS_FLAPS SCENE_HAS_FLAPS
+// SHADOWS_FILTERED only if the scene has something to filter by.
+layout(constant_id = 23) const uint SCENE_SHADOWS = SHADOWS_OPAQUE;
+// Media with ranks.
+layout(constant_id = 24) const bool SCENE_NESTED = true;
+// Spots with a picture or a linear ramp.
+layout(constant_id = 25) const bool SCENE_HAS_SLIDES = true;
+// Objects that cast no shadow.
+layout(constant_id = 26) const bool SCENE_SHADOWLESS = true;
+// The camera looks through what glows.
+layout(constant_id = 27) const bool SCENE_HIDES_EMITTERS = true;
+// Contributions have a limit.
+layout(constant_id = 28) const bool SCENE_HAS_CLAMP = true;
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };

@@ -21,17 +21,18 @@ void push_path(PathState path) {
     levels[level_first(level) + at] = path;
 }
 
-// Appends a shadow ray.
+// Appends a shadow ray. Where the shadow kernel does so while others are read, to the half of the queue that is not.
 void push_shadow(ShadowRay shadow) {
     uint at = atomicAdd(control.shadow_count, 1u);
     if (at >= control.shadow_capacity) {
         atomicAdd(control.overflows, 1u);
         return;
     }
-    shadows[at] = shadow;
+    uint first = SCENE_SHADOWS == SHADOWS_FILTERED ? control.shadow_capacity - control.shadow_first : 0u;
+    shadows[first + at] = shadow;
 }
 
-// Notes that a contribution was limited.
+// Notes that a contribution which reaches the film was limited.
 void count_limited() {
     atomicAdd(control.limited_count, 1u);
 }

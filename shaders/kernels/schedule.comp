@@ -15,10 +15,16 @@ void main() {
     control.shadow_pending = min(control.shadow_count, control.shadow_capacity);
     control.shadow_count = 0u;
     control.chunk_count = 0u;
-    uint room = control.chunk_limit; // rays of the last level have no branches
+    uint most = control.chunk_limit;
+    if (SCENE_SHADOWS == SHADOWS_FILTERED) {
+        control.shadow_first = control.shadow_capacity - control.shadow_first;
+        // All of those pending may go on behind a pane.
+        most = min(most, (control.shadow_capacity - control.shadow_pending) / max(header.shadow_rays, 1u));
+    }
+    uint room = most; // rays of the last level have no branches
     for (uint level = header.level_count; level-- > 0u;) {
         uint waiting = control.level_count[level];
-        uint count = min(min(waiting, control.chunk_limit), room);
+        uint count = min(min(waiting, most), room);
         if (count > control.chunk_count) {
             control.chunk_level = level;
             control.chunk_count = count;

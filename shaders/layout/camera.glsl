@@ -23,11 +23,12 @@ struct Camera {
     vec3 forward;
     // Height of a pixel, world units: on the plane at distance 1 (perspective), anywhere (orthographic).
     float pixel_size;
-    // Reserved for the thin lens: radius and focal distance.
+    // The thin lens, world units: its radius, 0 for a pinhole, and how far along `forward` it shows things sharp.
     float lens_radius;
-    float focal_distance;
-    uint pad1;
-    uint pad2;
+    float focus_distance;
+    // Added to s and t: what is seen lies off the middle of a larger picture.
+    float shift_x;
+    float shift_y;
 };
 
 #endif

@@ -12,7 +12,7 @@ struct DispatchArguments {
     uint z;
 };
 
-// One per device. 376 bytes.
+// One per device. 380 bytes.
 // A round is: schedule; extend (this round's chunk) and shadow (last round's queue); shade.
 struct Control {
     // Indirect arguments written by schedule.
@@ -27,8 +27,10 @@ struct Control {
     uint chunk_count;
     // Shadow rays the shadow kernel traces in this round.
     uint shadow_pending;
-    // Shadow rays appended by shade.
+    // Shadow rays appended by shade, and where those that the shadow kernel traces begin: where it appends some itself the
+    // queue has two halves, which take turns.
     uint shadow_count;
+    uint shadow_first;
     // Limits set by the host: rays a chunk may hold, entries of levels 0 and >= 1, entries of the shadow queue.
     uint chunk_limit;
     uint level0_capacity;

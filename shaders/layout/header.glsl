@@ -13,12 +13,16 @@ const uint SAMPLER_SOBOL = 0u;
 const uint SAMPLER_STRATIFIED = 1u;
 const uint SAMPLER_INDEPENDENT = 2u;
 
+const uint SHADOWS_OFF = 0u;
+const uint SHADOWS_OPAQUE = 1u;
+const uint SHADOWS_FILTERED = 2u;
+
 const uint FILTER_BOX = 0u;
 const uint FILTER_TENT = 1u;
 // Gaussian, Mitchell and other tabulated filters: piecewise constant, sampled through their inverse CDF.
 const uint FILTER_TABLE = 2u;
 
-// Scene-wide values. 272 bytes. `first_*` are offsets into the data heap in 16-byte words.
+// Scene-wide values. 288 bytes. `first_*` are offsets into the data heap in 16-byte words.
 struct SceneHeader {
     Camera camera;
     // I_a of the ambient term (radiance).
@@ -36,7 +40,7 @@ struct SceneHeader {
     uint sampling;
     // For the stratified sampler: strata per axis, >= 1.
     uint strata;
-    // 1 if shadow rays are traced.
+    // `SHADOWS_*`: what becomes of shadow rays.
     uint shadows;
     // `FILTER_*`.
     uint filter_kind;
@@ -85,7 +89,16 @@ struct SceneHeader {
     uint level_count;
     // 1 if a ray that has left a surface can meet light: something glows or surrounds the scene (path).
     uint glows;
-    uint pad0;
+    // Shadow rays that one shaded ray sends, at most.
+    uint shadow_rays;
+    // First float in the table array of the media that have a rank: index and Beer coefficient of each, from rank 1 on.
+    uint media_table;
+    // 1 if media are nested by rank.
+    uint nested;
+    // 1 if some object casts no shadow (path).
+    uint shadowless;
+    // 1 if the camera looks through what glows (path).
+    uint hide_emitters;
 };
 
 // Intervals in the tabulated filter's inverse CDF.

@@ -12,7 +12,10 @@ const uint ATTENUATION_INVERSE_SQUARE = 0u;
 const uint ATTENUATION_POLYNOMIAL = 1u;
 const uint ATTENUATION_NONE = 2u;
 
-// One light. 80 bytes.
+// Entries of the table array that describe a slide.
+const uint SLIDE_ENTRIES = 10u;
+
+// One light. 112 bytes.
 struct Light {
     vec3 position;
     // `LIGHT_*`.
@@ -29,14 +32,21 @@ struct Light {
     vec3 c;
     // Cosine of the half angle where a spot begins to fall off; equal to `cos_outer` for a hard edge.
     float cos_inner;
+    // Warn's flaps: the box of the world that the light reaches, from -`T_INFINITE`
+    vec3 flaps_min;
     // Warn's exponent p: intensity times cos^p of the angle off the axis; 0 for none.
     float exponent;
+    // to `T_INFINITE` where there are none.
+    vec3 flaps_max;
     // 1 if the light casts shadows.
     uint casts_shadow;
+    // 1 if something stands in a spot's beam (`shading/slide`); `table` is then the first of its `SLIDE_ENTRIES`.
+    uint slide;
+    uint table;
     uint pad0;
     uint pad1;
 };
-const uint LIGHT_WORDS = 5u;
+const uint LIGHT_WORDS = 7u;
 
 #ifdef GONIO_FETCH
 Light load_light(uint index) {
@@ -55,10 +65,16 @@ Light load_light(uint index) {
     r.c = uintBitsToFloat(w3.xyz);
     r.cos_inner = uintBitsToFloat(w3.w);
     uvec4 w4 = fetch_data(at + 4u);
-    r.exponent = uintBitsToFloat(w4.x);
-    r.casts_shadow = w4.y;
-    r.pad0 = w4.z;
-    r.pad1 = w4.w;
+    r.flaps_min = uintBitsToFloat(w4.xyz);
+    r.exponent = uintBitsToFloat(w4.w);
+    uvec4 w5 = fetch_data(at + 5u);
+    r.flaps_max = uintBitsToFloat(w5.xyz);
+    r.casts_shadow = w5.w;
+    uvec4 w6 = fetch_data(at + 6u);
+    r.slide = w6.x;
+    r.table = w6.y;
+    r.pad0 = w6.z;
+    r.pad1 = w6.w;
     return r;
 }
 #endif

@@ -26,6 +26,8 @@ const uint MODEL_MEASURED = 18u;
 const uint MODEL_NULL = 19u;
 // Two materials, one after the other from `table` on: (1 - extra) of the first and extra of the second.
 const uint MODEL_BLEND = 20u;
+// Measured for directions of light (`shading/tabulated`).
+const uint MODEL_TABULATED = 21u;
 
 // Material flag: the filtered form of non-refractive transparency, I_1 + k_t O_t I_2.
 const uint MATERIAL_FILTERED = 1u;
@@ -55,6 +57,8 @@ const uint MATERIAL_WARD_1992 = 2048u;
 const uint MATERIAL_WARD_DUER = 4096u;
 // Material flag: the model has another side: its frame's z leaves the outside, whichever side is seen.
 const uint MATERIAL_TRANSMISSIVE = 8192u;
+// Material flag: of a blend, the first material in front and the second behind.
+const uint MATERIAL_BY_SIDE = 32768u;
 // Where `MATERIAL_*` keeps `DISTRIBUTION_*` of lobe 0, two bits; lobe 1 in the two above.
 const uint DISTRIBUTION_SHIFT = 16u;
 
@@ -118,7 +122,8 @@ struct Material {
     float m1_v;
     // Ashikhmin's n across the tangent.
     float exponent_v;
-    // Oren and Nayar's sigma; a plastic's diffuse reflectance from inside; a principled material's metallic; a blend's weight.
+    // Oren and Nayar's sigma; a plastic's diffuse reflectance from inside; a principled material's metallic; a blend's weight;
+    // of a clear body the rank of its medium.
     float extra;
 };
 const uint MATERIAL_WORDS = 10u;

@@ -71,16 +71,18 @@ struct PathState {
     uint path_id;
     // Scattering events so far (passing straight through a pane is none).
     uint depth;
-    // What is still uncovered in front of this ray, for alpha; 0 off the camera's straight line.
+    // On the camera's straight line (depth 0) what is still uncovered in front of this ray, for alpha. Off it 0, or with
+    // filtered shadows how far before the ray's origin its direction was drawn: the way through panes (path).
     float coverage;
     // Relative index of the medium the ray travels in (1 outside everything).
     float eta;
     // Density per solid angle with which the ray's direction was drawn where it left a surface; 0 if no light sample there
-    // could have had it: camera rays, directions of zero width, what has passed a pane (path).
+    // could have had it: camera rays, directions of zero width, what has passed a pane that stops shadow rays (path).
     float pdf;
     // Beer coefficient of that medium, per scene unit.
     vec3 absorption;
-    uint pad1;
+    // Media that the ray is inside of, where they have ranks (`shading/interior`).
+    uint interior;
 };
 const uint PATH_STATE_WORDS = 7u;
 
@@ -113,7 +115,7 @@ PathState load_path_state(uint index) {
     r.pdf = uintBitsToFloat(w5.w);
     uvec4 w6 = fetch_path(at + 6u);
     r.absorption = uintBitsToFloat(w6.xyz);
-    r.pad1 = w6.w;
+    r.interior = w6.w;
     return r;
 }
 #endif
@@ -126,8 +128,10 @@ struct ShadowRay {
     uint slot;
     // Hash that dithers the conversion to fixed point (`film` in transport).
     uint dither;
-    uint pad0;
-    uint pad1;
+    // Panes passed so far.
+    uint layer;
+    // 1 if the scene's `clamp` has limited the contribution.
+    uint limited;
 };
 const uint SHADOW_RAY_WORDS = 5u;
 
@@ -151,8 +155,8 @@ ShadowRay load_shadow_ray(uint index) {
     uvec4 w4 = fetch_shadow(at + 4u);
     r.slot = w4.x;
     r.dither = w4.y;
-    r.pad0 = w4.z;
-    r.pad1 = w4.w;
+    r.layer = w4.z;
+    r.limited = w4.w;
     return r;
 }
 #endif

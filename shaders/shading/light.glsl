@@ -7,6 +7,11 @@
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"
 
+// Kernels that know the scene leave out what it does not have (kernels/bindings.glsl).
+#ifndef HAS_FLAPS
+#define HAS_FLAPS true
+#endif
+
 // Squared distance below which a light is on the surface, where it has no direction.
 const float DISTANCE2_MIN = 1.0e-24;
 // Squared distance above which a light is taken as out of reach: keeps every product below finite.
@@ -58,8 +63,20 @@ float spot_factor(Light light, float cos_axis) {
     return ((t * t) * (3.0 - 2.0 * t)) * cos_power(cos_axis, light.exponent);
 }
 
-// The light as seen from `position` (world). Zero radiance, but a valid direction, if the two coincide.
+// Whether Warn's flaps, planes of constant x, y or z of the world, let the light reach `position`: it is between them on
+// every axis (Warn 1983, "Lighting Controls for Synthetic Images": barn doors).
+bool within_flaps(Light light, vec3 position) {
+    vec3 low = light.flaps_min;
+    vec3 high = light.flaps_max;
+    return (position.x >= low.x && position.x <= high.x) && (position.y >= low.y && position.y <= high.y) &&
+        (position.z >= low.z && position.z <= high.z);
+}
+
+// The light as seen from `position` (world). Zero radiance, but a valid direction, if the two coincide or flaps are between.
 LightSample sample_light(Light light, vec3 position) {
+    if (HAS_FLAPS && !within_flaps(light, position)) {
+        return no_light();
+    }
     if (light.kind == LIGHT_DIRECTIONAL) {
         return LightSample(-light.direction, T_INFINITE, spectrum_from_rgb(light.intensity), 0.0);
     }

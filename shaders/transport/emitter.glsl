@@ -7,11 +7,13 @@
 #include "shading/light.glsl"
 #include "shading/material.glsl"
 #include "shading/math.glsl"
+#include "shading/slide.glsl"
 #include "shading/spectrum.glsl"
 #include "shading/warp.glsl"
 #include "trace/ray.glsl"
 #include "trace/surface.glsl"
 #include "transport/area_light.glsl"
+#include "transport/local.glsl"
 #include "transport/textured.glsl"
 
 // The emitter that two random numbers choose, 0..1 excluding 1, by its probability: Walker's alias method (Vose 1991,
@@ -30,8 +32,8 @@ Spectrum textured_radiance(Emitter emitter, SampleKey key, vec3 position, vec2 u
     Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0.0, 0.0);
     Hit hit = Hit(lit.distance, b.x, b.y, emitter.instance, emitter.primitive, 0u, 0u, 0u);
     Surface surface = surface_at(ray, hit);
-    Material material = material_at(lit.wi, hit, key, surface);
-    return spectrum_from_rgb(emission_material(material) * own_weight(material));
+    Material material = material_at(lit.wi, hit, key, DIMENSION_LIGHT_LEAF, surface);
+    return spectrum_from_rgb(emitted(surface, material, -lit.wi) * own_weight(material));
 }
 
 // Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1. `key`: of the
@@ -45,7 +47,9 @@ LightSample sample_emitter(Emitter emitter, SampleKey key, Surface surface, vec2
         return LightSample(seen.wi, T_INFINITE, radiance, pdf);
     }
     if (HAS_EMITTER(EMITTER_LIGHT) && emitter.kind == EMITTER_LIGHT) {
-        LightSample lit = sample_light(load_light(emitter.instance), position);
+        Light light = load_light(emitter.instance);
+        LightSample lit = sample_light(light, position);
+        if (SCENE_HAS_SLIDES && light.slide != 0u) lit.radiance *= slide_factor(light, lit.wi);
         lit.radiance *= rcp(emitter.density);
         return lit;
     }
@@ -67,11 +71,11 @@ bool casts_shadow(Emitter emitter) {
 }
 
 // Density per solid angle with which `sample_emitter`, its choice included, would have drawn the direction of a ray that
-// left `origin` and met a glowing surface at `t`.
-float pdf_emitter(vec3 origin, vec3 direction, float t, Surface surface) {
+// left `origin` and met a glowing surface of material `named` at `t`.
+float pdf_emitter(vec3 origin, vec3 direction, float t, Surface surface, uint named) {
     Instance instance = load_instance(surface.instance);
     // Without textures: what bake made the choice by.
-    Material material = load_material(surface.material);
+    Material material = load_material(named);
     Spectrum shown = spectrum_from_rgb(emission_material(material) * own_weight(material));
     float density = instance.light_density * spectrum_luminance(shown);
     if (HAS_EMITTER(EMITTER_SPHERE) && surface.kind == KIND_SPHERE) {

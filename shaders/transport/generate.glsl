@@ -6,6 +6,7 @@
 #include "shading/filter.glsl"
 #include "shading/sampling.glsl"
 #include "shading/spectrum.glsl"
+#include "shading/warp.glsl"
 #include "transport/mod.glsl"
 
 // The key of a path's random numbers: they depend on nothing else.
@@ -31,6 +32,7 @@ PathState generate(Batch batch, uint slot) {
     float film_x = float(x) + 0.5 + pixel_filter.offset.x;
     float film_y = float(y) + 0.5 + pixel_filter.offset.y;
     CameraRay camera = camera_ray(header.camera, film_x, film_y);
+    if (SCENE_HAS_LENS) camera = through_lens(header.camera, camera, square_to_disk(sample_2d(key, DIMENSION_LENS)));
     PathState path;
     path.ray.origin = camera.origin;
     path.ray.t_max = T_INFINITE;
@@ -50,7 +52,7 @@ PathState generate(Batch batch, uint slot) {
     path.eta = 1.0;
     path.pdf = 0.0;
     path.absorption = vec3(0.0);
-    path.pad1 = 0u;
+    path.interior = 0u;
     return path;
 }
 

@@ -7,6 +7,7 @@
 #include "shading/material.glsl"
 #include "shading/math.glsl"
 #include "shading/sampling.glsl"
+#include "shading/slide.glsl"
 #include "shading/spectrum.glsl"
 #include "trace/spawn.glsl"
 #include "trace/surface.glsl"
@@ -93,10 +94,10 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
 
     if (!is_delta(material) && !hidden && header.light_count != 0u) {
         Frame frame = shading_frame(surface, material, wo);
-        uint index = 0u;
-        do {
+        for (uint index = 0u; index < header.light_count; index++) {
             Light light = load_light(index);
             LightSample lit = sample_light(light, surface.position);
+            if (SCENE_HAS_SLIDES && light.slide != 0u) lit.radiance *= slide_factor(light, lit.wi);
             Spectrum seen = light_contribution(weight, material, frame, wo, lit.wi, lit.radiance);
             if (spectrum_max(seen) > 0.0) {
                 vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
@@ -108,18 +109,17 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
                     add_contribution(header.film_scale, path.slot, contribution, light_dither);
                 }
             }
-            index += 1u;
-        } while (index < header.light_count);
+            if (index + 1u == header.light_count) {
+                break;
+            }
+        }
     }
 }
 
 // Lets the ray go on through a pane.
 void shade_through(PathState path, Surface surface, Material material) {
     if (SCENE_HAS_PANES && material.k_t > 0.0) {
-        vec4 tint = vec4(material.k_t);
-        if ((material.flags & MATERIAL_FILTERED) != 0u) {
-            tint *= spectrum_from_rgb(material.transmit_color);
-        }
+        vec4 tint = pane_tint(material);
         PathState through = path;
         through.throughput = path.throughput * tint;
         through.coverage = path.coverage * material.k_t;

@@ -7,12 +7,14 @@
 
 // Dimensions of a sample's random numbers: pairs drawn for the named purpose.
 const uint DIMENSION_FILTER = 0u;
+const uint DIMENSION_LENS = 1u;
 const uint DIMENSION_LIGHT_CHOICE = 16u;
 const uint DIMENSION_LIGHT = 17u;
 const uint DIMENSION_BSDF = 18u;
 const uint DIMENSION_LOBE = 19u;
 const uint DIMENSION_ROULETTE = 20u;
 const uint DIMENSION_PANE = 21u;
+const uint DIMENSION_LIGHT_LEAF = 22u;
 const uint DIMENSION_LEAF = 32u;
 // Dither of contributions: emission and ambient, background, alpha; light i takes `DITHER_LIGHT + i`.
 const uint DITHER_SURFACE = 0x10000000u;

@@ -5,7 +5,8 @@
 // weighted by the power heuristic. A path goes on as one ray. `direct` is the case of one scattering event.
 //
 // Panes (k_t, opacity) are a choice at random between the surface and what lies behind; passing is no scattering event.
-// Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit.
+// Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit; filtered shadow rays do
+// (`transport/shadow`), and a ray that passes one stays a sample of the direction it was drawn with.
 #ifndef TRANSPORT_PATH_GLSL
 #define TRANSPORT_PATH_GLSL
 
@@ -20,17 +21,35 @@
 #include "trace/surface.glsl"
 #include "transport/emitter.glsl"
 #include "transport/local.glsl"
+#include "transport/nested.glsl"
 #include "transport/mod.glsl"
 #include "transport/weight.glsl"
 
-// A contribution of light that has been scattered, within the scene's limit; how often that bites is counted.
-Spectrum limited(uint depth, Spectrum value) {
+// Factor that keeps a contribution of light that has been scattered within the scene's limit; below 1 where that bites.
+float limit(uint depth, Spectrum value) {
     float largest = spectrum_max(value);
-    if (header.clamp <= 0.0 || depth == 0u || largest <= header.clamp) {
-        return value;
+    if (!SCENE_HAS_CLAMP || depth == 0u || largest <= header.clamp) {
+        return 1.0;
     }
-    count_limited();
-    return value * div(header.clamp, largest);
+    return div(header.clamp, largest);
+}
+
+// Adds light that a path has met, within the scene's limit; how often that bites is counted.
+// `coverage`: what it adds to alpha.
+void add_limited(PathState path, Spectrum value, float coverage, uint dither) {
+    float factor = limit(path.depth, value);
+    if (SCENE_HAS_CLAMP && factor < 1.0) count_limited();
+    Spectrum seen = value * factor;
+    add_contribution(header.film_scale, path.slot, vec4(seen.x, seen.y, seen.z, coverage), dither);
+}
+
+// Weight of light that a ray of density `own` has met where light samples would have had density `sampled`. An object that
+// casts no shadow is in the way of the one and not of the other, so in its scene light samples count in full.
+float met_weight(float own, float sampled) {
+    if (SCENE_SHADOWLESS && sampled > 0.0) {
+        return 0.0;
+    }
+    return power_heuristic(own, sampled);
 }
 
 // Adds what a ray that leaves the scene sees.
@@ -42,11 +61,10 @@ void shade_escape(PathState path, SampleKey key) {
     float weight = 1.0;
     if (HAS_EMITTER(EMITTER_ENVIRONMENT) && path.pdf > 0.0) {
         float sampled = header.environment_density * pdf_environment(path.ray.direction);
-        weight = power_heuristic(path.pdf, sampled);
+        weight = met_weight(path.pdf, sampled);
     }
-    Spectrum seen = limited(path.depth, path.throughput * (radiance * weight));
-    vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
-    add_contribution(header.film_scale, path.slot, contribution, dither_hash(key, DITHER_BACKGROUND));
+    Spectrum seen = path.throughput * (radiance * weight);
+    add_limited(path, seen, 0.0, dither_hash(key, DITHER_BACKGROUND));
 }
 
 // Light of one emitter, chosen at random, that the surface sends on towards `wo`; its shadow ray is appended.
@@ -71,16 +89,19 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
         return;
     }
     float weight = 1.0;
-    if (lit.pdf_solid_angle > 0.0) {
+    if (lit.pdf_solid_angle > 0.0 && !SCENE_SHADOWLESS) {
         weight = power_heuristic(lit.pdf_solid_angle, pdf_material(material, wo_local, wi_local));
     }
-    Spectrum seen = limited(path.depth + 1u, reflected * weight);
+    float factor = limit(path.depth + 1u, reflected * weight);
+    Spectrum seen = (reflected * weight) * factor;
+    uint limited = factor < 1.0 ? 1u : 0u;
     vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
     uint dither = dither_hash(key, DITHER_LIGHT);
     if (casts_shadow(emitter)) {
         Ray ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
-        push_shadow(ShadowRay(ray, contribution, path.slot, dither, 0u, 0u));
+        push_shadow(ShadowRay(ray, contribution, path.slot, dither, 0u, limited));
     } else {
+        if (SCENE_HAS_CLAMP && limited != 0u) count_limited();
         add_contribution(header.film_scale, path.slot, contribution, dither);
     }
 }
@@ -107,6 +128,10 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
     if ((bsdf.flags & SAMPLE_TRANSMIT) != 0u && material.model != MODEL_THIN_DIELECTRIC) {
         next.eta = path.eta * bsdf.eta;
         next.absorption = bsdf.wi.z < 0.0 ? material.absorption : vec3(0.0);
+        if (SCENE_NESTED) {
+            next.interior = cross_interface(path.interior, material, bsdf.wi.z < 0.0);
+            next.absorption = medium_absorption(next.interior);
+        }
     }
     if (next.depth >= header.rr_depth) {
         float survives = survival(next.throughput, next.eta);
@@ -122,17 +147,32 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
     push_path(next);
 }
 
+// Whether shadow rays pass the surface as if it were not there.
+bool lets_shadow_rays_pass(Surface surface) {
+    return SCENE_SHADOWLESS && (load_instance(surface.instance).flags & INSTANCE_NO_SHADOW) != 0u;
+}
+
 // Shades one hit: adds what glows, samples an emitter, and lets the path go on.
-// `key`: of the path.
-void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Material material) {
+// `key`: of the path. `named`: the surface's material, of which `material` is what is met here.
+void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uint named, Material material) {
     PathState path = incoming;
     vec3 direction = path.ray.direction;
+    const bool filtered = SCENE_SHADOWS == SHADOWS_FILTERED;
+    // How far before the ray's origin its direction was drawn.
+    float passed = 0.0;
+    if (filtered && path.depth > 0u) {
+        passed = path.coverage;
+        path.coverage = 0.0;
+    }
+    if (SCENE_HIDES_EMITTERS && path.depth == 0u && emission_material(material) != vec3(0.0)) {
+        path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
+        path.ray = spawn_through(surface, direction, path.ray.t_max);
+        push_path(path);
+        return;
+    }
     if (SCENE_HAS_PANES && material.k_t > 0.0) {
         float own = own_weight(material);
-        vec4 tint = vec4(material.k_t);
-        if ((material.flags & MATERIAL_FILTERED) != 0u) {
-            tint *= spectrum_from_rgb(material.transmit_color);
-        }
+        vec4 tint = pane_tint(material);
         // Each side as often as it is bright.
         float share = spectrum_max(tint);
         float through = div(share, own + share);
@@ -140,7 +180,12 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Mat
             path.throughput *= tint * rcp(through);
             path.coverage *= material.k_t * rcp(through);
             path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
-            path.pdf = 0.0;
+            if (filtered && path.depth > 0u) {
+                path.coverage = passed + hit.t;
+            }
+            if (!(filtered || lets_shadow_rays_pass(surface))) {
+                path.pdf = 0.0;
+            }
             path.ray = spawn_through(surface, direction, path.ray.t_max);
             push_path(path);
             return;
@@ -155,12 +200,12 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, Mat
     if (glows || path.coverage != 0.0) {
         float weight = 1.0;
         if (glows && path.pdf > 0.0) {
-            float sampled = pdf_emitter(path.ray.origin, direction, hit.t, surface);
-            weight = power_heuristic(path.pdf, sampled);
+            vec3 from = filtered ? path.ray.origin - direction * passed : path.ray.origin;
+            float sampled = pdf_emitter(from, direction, filtered ? passed + hit.t : hit.t, surface, named);
+            weight = met_weight(path.pdf, sampled);
         }
-        Spectrum seen = limited(path.depth, path.throughput * (own_light * weight));
-        vec4 contribution = vec4(seen.x, seen.y, seen.z, path.coverage);
-        add_contribution(header.film_scale, path.slot, contribution, dither_hash(key, DITHER_SURFACE));
+        Spectrum seen = path.throughput * (own_light * weight);
+        add_limited(path, seen, path.coverage, dither_hash(key, DITHER_SURFACE));
     }
     if (path.depth >= header.max_depth || is_hidden_back(surface, material, wo)) {
         return;

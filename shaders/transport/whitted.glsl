@@ -14,6 +14,7 @@
 #include "trace/surface.glsl"
 #include "transport/local.glsl"
 #include "transport/mod.glsl"
+#include "transport/nested.glsl"
 
 // Appends one branch, unless its weight is below the scene's threshold.
 void push_branch(PathState path, Surface surface, vec3 wi, Spectrum weight, uint lobe) {
@@ -49,7 +50,7 @@ bool is_refracting(Material material) {
 }
 
 // Follows the mirror branch of any material and both branches of a dielectric, each with its Fresnel weight.
-// Media do not nest: a ray that leaves a dielectric is outside. Radiance is not scaled by eta^2 (Whitted's model).
+// Without ranks media do not nest: a ray that leaves a dielectric is outside. Radiance is not scaled by eta^2 (Whitted's model).
 void shade_whitted(PathState path, Surface surface, Material material) {
     vec3 wo = -path.ray.direction;
     if (!is_refracting(material)) {
@@ -80,6 +81,10 @@ void shade_whitted(PathState path, Surface surface, Material material) {
     PathState inside = path;
     inside.eta = entering ? material.eta.x : 1.0;
     inside.absorption = entering ? material.absorption : vec3(0.0);
+    if (SCENE_NESTED) {
+        inside.interior = cross_interface(path.interior, material, entering);
+        inside.absorption = medium_absorption(inside.interior);
+    }
     push_branch(inside, surface, to_world(frame, refraction.wt), weight, LOBE_REFRACT);
 }
 

@@ -2,7 +2,8 @@
 
 use super::BakeError;
 use crate::layout::{
-    Emitter, EnvironmentMap, Face, Instance, Light, Material, Node, SceneHeader, SceneView, Texture, Triangle, Vertex,
+    Emitter, EnvironmentMap, Face, Instance, Light, Material, Node, PARAMETER_MASK, PARAMETER_OPACITY, SceneHeader,
+    SceneView, Texture, Triangle, Vertex,
 };
 use serde::{Deserialize, Serialize};
 
@@ -68,6 +69,12 @@ pub struct BakeTimes {
 }
 
 impl SceneData {
+    /// Whether light goes straight on through something: by its material, or by holes that a texture cuts.
+    pub fn has_panes(&self) -> bool {
+        let cuts = |texture: &Texture| matches!(texture.parameter, PARAMETER_OPACITY | PARAMETER_MASK);
+        self.textures.iter().any(cuts) || self.materials.iter().any(|material| material.k_t > 0.0)
+    }
+
     /// The arrays as the twins take them.
     pub fn view(&self) -> SceneView<'_> {
         SceneView {

@@ -120,10 +120,9 @@ fn distribute(mut all: Collection, data: &mut SceneData) {
     data.emitters = all.emitters;
 }
 
-/// What a material sends out, without its textures, as far as it covers. A blend shows its leaves; what they emit is found
-/// by chance only.
+/// What a material sends out, without its textures, as far as it covers; a blend on average.
 fn emission(material: &Material) -> Vec3 {
-    if material.model == MODEL_BLEND { Vec3::ZERO } else { emission_material(material) * own_weight(material) }
+    emission_material(material) * own_weight(material)
 }
 
 fn collect_instance(data: &SceneData, index: usize, primitives: &dyn Fn(usize) -> Vec<u32>, all: &mut Collection) {
@@ -136,11 +135,13 @@ fn collect_instance(data: &SceneData, index: usize, primitives: &dyn Fn(usize) -
     };
     let textured = |material: &Material| {
         let (first, count) = (material.first_texture as usize, material.texture_count as usize);
-        data.textures[first..first + count].iter().any(|texture| match texture.parameter {
-            PARAMETER_EMISSION => true,
-            PARAMETER_COLOR => material.model == MODEL_EMISSIVE,
-            _ => false,
-        })
+        // What a blend shows is found where it is met.
+        material.model == MODEL_BLEND
+            || data.textures[first..first + count].iter().any(|texture| match texture.parameter {
+                PARAMETER_EMISSION => true,
+                PARAMETER_COLOR => material.model == MODEL_EMISSIVE,
+                _ => false,
+            })
     };
     let mut power = 0.0;
     let sides = |material: &Material| if (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0 { 1.0 } else { 2.0 };

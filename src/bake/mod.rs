@@ -14,13 +14,16 @@ mod geometry;
 mod instance;
 mod light;
 mod measured;
+mod media;
 mod mip;
 mod model;
 mod scene;
 pub mod srgb;
+mod tabulated;
 mod texture;
 mod wide;
 
+pub use albedo::gaussian_scale;
 pub use data::{BakeTimes, HeapPiece, SceneData};
 pub use scene::bake;
 
@@ -44,6 +47,9 @@ pub enum BakeError {
     /// More than a random number can tell apart.
     #[error("{count} triangles and lights glow; at most {most} are possible under direct and path")]
     Emitters { count: usize, most: usize },
+    /// Ranks are bytes.
+    #[error("{count} clear materials nest by priority; at most {most} are possible")]
+    Media { count: usize, most: usize },
     /// A blend of blends of blends.
     #[error("material \"{name}\" blends more than 8 materials, or itself")]
     Blend { name: String },

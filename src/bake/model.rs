@@ -3,10 +3,12 @@
 use super::BakeError;
 use super::albedo::{conductor_table, constant_table, diffuse_reflectance, kelemen_table, plastic_table};
 use super::measured::measured_table;
+use super::tabulated::tabulated_table;
 use crate::layout::*;
 use crate::scene::{
     self, Distribution, Fresnel, Lobe, Masking, Model, Principled, Table, Transparency, WardNormalisation,
 };
+use crate::shading::material::{emission_material, own_weight};
 use glam::Vec3;
 
 /// An index closer to 1 than this would leave rough glass without facets that refract.
@@ -36,13 +38,14 @@ pub fn bake_material(
         table: INVALID,
         ..Material::default()
     };
-    if !material.two_sided {
-        baked.flags |= MATERIAL_ONE_SIDED;
-    }
     if !material.emission_two_sided {
         baked.flags |= MATERIAL_EMIT_ONE_SIDED;
     }
     bake_model(material, measured, traced, &mut baked, tables)?;
+    // The far side of what transmits is no back.
+    if !material.two_sided && baked.flags & MATERIAL_TRANSMISSIVE == 0 {
+        baked.flags |= MATERIAL_ONE_SIDED;
+    }
     match material.transparency {
         None if matches!(material.model, Model::Null) => baked.k_t = 1.0,
         // What does not cover lets everything through (`path` draws it at random, the others as a branch).
@@ -156,10 +159,10 @@ fn bake_model(
             plastic_table(baked, tables);
         }
         Model::Principled(principled) => bake_principled(principled, baked, tables),
-        Model::Measured { table } => {
-            baked.model = MODEL_MEASURED;
-            measured_table(&measured[table.0 as usize], baked, tables);
-        }
+        Model::Measured { table } => match &measured[table.0 as usize] {
+            Table::Merl { values } => measured_table(values, baked, tables),
+            Table::Directional(table) => tabulated_table(table, baked, tables),
+        },
         Model::Null => {
             baked.model = MODEL_NULL;
             baked.flags |= MATERIAL_TRANSMISSIVE;
@@ -168,6 +171,10 @@ fn bake_model(
         Model::Blend { weight, .. } => {
             baked.model = MODEL_BLEND;
             baked.extra = *weight;
+        }
+        Model::Sides { .. } => {
+            baked.model = MODEL_BLEND;
+            baked.flags |= MATERIAL_BY_SIDE;
         }
     }
     Ok(())
@@ -247,15 +254,24 @@ fn bake_principled(principled: &Principled, baked: &mut Material, tables: &mut V
     ]);
 }
 
-/// Puts copies of each blend's two materials one after the other at the end of `baked`, where the blend's `table` says.
+/// What a material is made of, if of others.
+fn parts(material: &scene::Material) -> Option<[usize; 2]> {
+    match material.model {
+        Model::Blend { a, b, .. } | Model::Sides { front: a, back: b } => Some([a.0 as usize, b.0 as usize]),
+        _ => None,
+    }
+}
+
+/// Puts copies of each blend's two materials one after the other at the end of `baked`, where the blend's `table` says, with
+/// what the blend itself emits; the blend's own emission becomes what it shows on average.
 pub fn bake_blends(materials: &[scene::Material], baked: &mut Vec<Material>) -> Result<(), BakeError> {
     for (index, material) in materials.iter().enumerate() {
-        if matches!(material.model, Model::Blend { .. }) {
+        if parts(material).is_some() {
             let leaves = blend_leaves(materials, index, 0);
             if leaves.is_none_or(|leaves| leaves > BLEND_LEAVES) {
                 return Err(BakeError::Blend { name: material.name.clone() });
             }
-            place_children(materials, index, baked);
+            place_parts(materials, index, index, baked);
         }
     }
     Ok(())
@@ -263,36 +279,50 @@ pub fn bake_blends(materials: &[scene::Material], baked: &mut Vec<Material>) -> 
 
 /// Leaves below a material; none if blends go too deep (or round in circles).
 fn blend_leaves(materials: &[scene::Material], index: usize, depth: usize) -> Option<usize> {
-    match materials[index].model {
-        Model::Blend { .. } if depth > BLEND_DEPTH => None,
-        Model::Blend { a, b, .. } => {
-            let below = |id: scene::MaterialId| blend_leaves(materials, id.0 as usize, depth + 1);
-            Some(below(a)? + below(b)?)
-        }
-        _ => Some(1),
+    match parts(&materials[index]) {
+        Some(_) if depth > BLEND_DEPTH => None,
+        Some([a, b]) => Some(blend_leaves(materials, a, depth + 1)? + blend_leaves(materials, b, depth + 1)?),
+        None => Some(1),
     }
 }
 
-fn place_children(materials: &[scene::Material], index: usize, baked: &mut Vec<Material>) {
-    let Model::Blend { a, b, .. } = materials[index].model else { return };
-    if baked[index].table != INVALID {
-        return;
+/// Places what record `place`, of material `index`, is made of.
+fn place_parts(materials: &[scene::Material], index: usize, place: usize, baked: &mut Vec<Material>) {
+    let Some(children) = parts(&materials[index]) else { return };
+    let (blend, first) = (baked[place], baked.len());
+    for child in children {
+        let own = &materials[child];
+        let from_blend = blend.emission != Vec3::ZERO && own.emission == Vec3::ZERO;
+        let one_sided = if from_blend { blend.flags & MATERIAL_EMIT_ONE_SIDED != 0 } else { !own.emission_two_sided };
+        // Its own record may have become that of a blend already.
+        let mut copy = Material { emission: own.emission + blend.emission, ..baked[child] };
+        copy.flags =
+            if one_sided { copy.flags | MATERIAL_EMIT_ONE_SIDED } else { copy.flags & !MATERIAL_EMIT_ONE_SIDED };
+        baked.push(copy);
     }
-    for child in [a, b] {
-        place_children(materials, child.0 as usize, baked);
+    for (k, child) in children.into_iter().enumerate() {
+        place_parts(materials, child, first + k, baked);
     }
-    baked[index].table = baked.len() as u32;
-    for child in [a, b] {
-        baked.push(baked[child.0 as usize]);
-    }
+    let shown = |k: usize| emission_material(&baked[first + k]) * own_weight(&baked[first + k]);
+    let second = if blend.flags & MATERIAL_BY_SIDE != 0 { 0.5 } else { blend.extra.clamp(0.0, 1.0) };
+    let emission = shown(0) * (1.0 - second) + shown(1) * second;
+    // A light sample may come from behind if any part shines there; the part that it meets then says what it sends.
+    let shines_back =
+        |part: &Material| emission_material(part) != Vec3::ZERO && part.flags & MATERIAL_EMIT_ONE_SIDED == 0;
+    let two_sided = baked[first..first + 2].iter().any(shines_back);
+    let record = &mut baked[place];
+    record.table = first as u32;
+    record.emission = emission;
+    record.flags &= !MATERIAL_EMIT_ONE_SIDED;
+    record.flags |= if two_sided { 0 } else { MATERIAL_EMIT_ONE_SIDED };
 }
 
 /// Whether a surface of this material casts a shadow: what it says, or else all but transparent panes do, and what is not there.
-/// `traced`: by paths, which find the way through a pane themselves.
-pub fn casts_shadow(material: &scene::Material, traced: bool) -> bool {
+/// `met`: by paths, which find the way through a pane themselves, or by filtered shadow rays.
+pub fn casts_shadow(material: &scene::Material, met: bool) -> bool {
     let pane = match material.transparency {
         Some(Transparency::Interpolated { k_t } | Transparency::Filtered { k_t, .. }) => k_t > 0.0,
         None => matches!(material.model, Model::Null) || material.opacity == 0.0,
     };
-    material.casts_shadow.unwrap_or(traced || !pane)
+    material.casts_shadow.unwrap_or(met || !pane)
 }

@@ -4,7 +4,9 @@ pub mod bench;
 pub mod compare;
 pub mod devices;
 mod exact;
+mod fit;
 mod gallery;
+mod growth;
 mod interrupt;
 pub mod merge;
 mod output;
@@ -14,6 +16,7 @@ mod progress;
 pub mod render;
 mod setup;
 mod sheet;
+mod team;
 pub mod verify;
 
 use anyhow::Context;

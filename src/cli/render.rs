@@ -5,11 +5,12 @@ use super::interrupt::Interrupt;
 use super::output::OutputFlags;
 use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, crop_of, film_of};
 use super::sheet::{self, Sheet};
-use super::{Usage, progress};
+use super::{Usage, progress, team};
 use crate::bake::SceneData;
 use crate::film::write::{Aov, Format};
 use crate::film::{Film, OutputFile, Rect};
-use crate::render::{Bounce, Counters, Job, Renderer, Watch};
+use crate::render::team::{Member, Order, Share, render};
+use crate::render::{Bounce, Counters};
 use crate::scene::Scene;
 use anyhow::Context;
 use clap::Args;
@@ -17,7 +18,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
-use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 #[derive(Args)]
@@ -29,6 +29,7 @@ Examples:
   gonio render scenes/lecture/02-phong.toml -o n.png     the scene's panels side by side, with labels
   gonio render --gallery scenes/lecture -o gallery       a page of all scenes of a folder
   gonio render scene.toml --time 60 -o best.exr          whatever a minute gives
+  gonio render scene.toml --device all                   on every GPU, software device and the CPU at once
   gonio render scene.toml --pixel 320,200                every bounce of one sample
   cat scene.toml | gonio render - -o - | display         from standard input to standard output")]
 pub struct RenderArgs {
@@ -96,9 +97,9 @@ fn parse_seconds(text: &str) -> Result<Duration, String> {
 
 /// How a render ended.
 struct Outcome {
+    shares: Vec<Share>,
     counters: Counters,
     render_time: Duration,
-    passes: u32,
     interrupted: Option<u8>,
 }
 
@@ -174,10 +175,9 @@ fn develop(args: &RenderArgs, scene: &Scene, interrupt: &Interrupt, show_progres
     let bake_start = Instant::now();
     let mut data = bake_scene(scene)?;
     data.header.aovs = u32::from(!args.aov.is_empty());
-    data.header.hide_background = u32::from(args.transparent);
+    data.header.hide_background |= u32::from(args.transparent);
     let bake_time = bake_start.elapsed();
-    let mut renderer = args.backend.renderer(&data)?;
-    log::info!("rendering on {}", renderer.name());
+    let members = team::members(&args.backend, &data)?;
 
     let mut film = film_of(scene, &data, crop);
     let samples = match (&args.samples, args.time, args.scene_flags.spp) {
@@ -186,9 +186,9 @@ fn develop(args: &RenderArgs, scene: &Scene, interrupt: &Interrupt, show_progres
         (None, Some(_), None) => 0..crate::film::MAX_SAMPLES,
         (None, _, _) => 0..scene.settings.samples,
     };
-    let outcome = render_passes(renderer.as_mut(), crop, samples, args.time, &mut film, interrupt, show_progress)?;
+    let outcome = render_samples(members, samples, args.time, &mut film, interrupt, show_progress)?;
     report(&film, &outcome.counters);
-    let stats = stats_json(args, &data, &film, renderer.as_ref(), &outcome, bake_time);
+    let stats = stats_json(args, &data, &film, &outcome, bake_time);
     Ok(Developed { film, stats, seconds: outcome.render_time.as_secs_f64(), interrupted: outcome.interrupted })
 }
 
@@ -198,11 +198,10 @@ fn default_output(scene: &Path) -> PathBuf {
     PathBuf::from(stem.unwrap_or("out".as_ref())).with_extension("png")
 }
 
-/// Renders pass by pass, each a whole number of samples for every pixel of the crop, until the samples, the time or
-/// the user's patience end.
-fn render_passes(
-    renderer: &mut dyn Renderer,
-    crop: Rect,
+/// Renders range by range, each a whole number of samples for every pixel of the crop, until the samples, the time or the
+/// user's patience end.
+fn render_samples(
+    members: Vec<Member>,
     samples: std::ops::Range<u32>,
     time: Option<Duration>,
     film: &mut Film,
@@ -210,33 +209,18 @@ fn render_passes(
     show_progress: bool,
 ) -> anyhow::Result<Outcome> {
     let start = Instant::now();
-    let pixels = crop.area() as u64;
-    let bar = progress::bar(pixels * u64::from(samples.end - samples.start), show_progress);
-    let abort = AtomicBool::new(false);
-    let watch = Watch { abort: &abort, advance: &|done| bar.inc(done) };
-    let mut outcome =
-        Outcome { counters: Counters::default(), render_time: Duration::ZERO, passes: 0, interrupted: None };
-    let mut next = samples.start;
-    let mut pass_samples = 1;
-    while next < samples.end {
-        let end = next.saturating_add(pass_samples).min(samples.end);
-        let pass_start = Instant::now();
-        outcome.counters += renderer.accumulate(&Job { crop, samples: next..end }, film, &watch)?;
-        outcome.passes += 1;
-        let pass_time = pass_start.elapsed();
-        outcome.interrupted = interrupt.exit_code();
-        if outcome.interrupted.is_some() || time.is_some_and(|limit| start.elapsed() >= limit) {
-            break;
-        }
-        // Passes of about half a second: long enough to fill a device, short enough to stop at; shorter if time runs out.
-        let left = time.map_or(0.5, |limit| limit.saturating_sub(start.elapsed()).as_secs_f64().min(0.5));
-        pass_samples = (f64::from(end - next) * left / pass_time.as_secs_f64().max(1e-4))
-            .clamp(1.0, f64::from(4 * (end - next))) as u32;
-        next = end;
-    }
+    let crop = film.crop();
+    let bar = progress::bar(crop.area() as u64 * u64::from(samples.end - samples.start), show_progress);
+    let advance = |done: i64| match u64::try_from(done) {
+        Ok(done) => bar.inc(done),
+        Err(_) => bar.dec(done.unsigned_abs()),
+    };
+    let stop = || interrupt.exit_code().is_some();
+    let shares = render(members, &Order { crop, samples, time, stop: &stop, advance: &advance }, film)?;
     bar.finish_and_clear();
-    outcome.render_time = start.elapsed();
-    Ok(outcome)
+    let mut counters = Counters::default();
+    shares.iter().for_each(|share| counters += share.counters);
+    Ok(Outcome { shares, counters, render_time: start.elapsed(), interrupted: interrupt.exit_code() })
 }
 
 /// Says what the user should know of the samples.
@@ -259,27 +243,30 @@ fn stats_json(
     args: &RenderArgs,
     data: &SceneData,
     film: &Film,
-    renderer: &dyn Renderer,
     outcome: &Outcome,
     bake_time: Duration,
 ) -> serde_json::Value {
     let seconds = outcome.render_time.as_secs_f64();
     let rays = outcome.counters.closest_rays + outcome.counters.shadow_rays;
+    let names: Vec<&str> = outcome.shares.iter().map(|share| share.name.as_str()).collect();
+    let devices: Vec<_> = outcome.shares.iter().map(share_json).collect();
     serde_json::json!({
         "schema": 1,
         "gonio": env!("CARGO_PKG_VERSION"),
         "scene": args.scene,
         "film_hash": film.hash().to_string(),
-        "device": renderer.name(),
+        "device": names.join(" + "),
+        "devices": devices,
         "width": film.spec().width,
         "height": film.spec().height,
         "crop": film.crop(),
         "seed": film.spec().seed,
         "samples": film.samples().to_string(),
-        "passes": outcome.passes,
+        "passes": outcome.shares.iter().map(|share| share.ranges).sum::<u32>(),
         "interrupted": outcome.interrupted.is_some(),
         "nan_count": film.nan_count(),
         "clamped_count": film.clamped_count(),
+        "limited_count": film.limited_count(),
         "render_s": seconds,
         "bake_s": bake_time.as_secs_f64(),
         "rays_per_s": rays as f64 / seconds.max(1e-9),
@@ -288,6 +275,20 @@ fn stats_json(
         "instances": data.instances.len(),
         "nodes": data.nodes.len(),
         "lights": data.lights.len(),
+    })
+}
+
+/// What one device did.
+fn share_json(share: &Share) -> serde_json::Value {
+    let rays = share.counters.closest_rays + share.counters.shadow_rays;
+    serde_json::json!({
+        "device": share.name,
+        "samples": share.samples,
+        "passes": share.ranges,
+        "busy_s": share.busy_s,
+        "rays_per_s": rays as f64 / share.busy_s.max(1e-9),
+        "counters": share.counters,
+        "error": share.error.as_ref().map(ToString::to_string),
     })
 }
 

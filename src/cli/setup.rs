@@ -1,12 +1,12 @@
 //! What render, parity and others share: from flags to a baked scene and a renderer.
 
-use super::{Usage, exact, progress};
+use super::{Usage, exact, progress, team};
 use crate::bake::{SceneData, bake};
 use crate::film::{Film, FilmSpec, Rect};
 use crate::render::cpu::CpuRenderer;
 use crate::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
 use crate::render::{RenderError, Renderer};
-use crate::scene::{Integrator, Scene, load};
+use crate::scene::{Integrator, Scene, Window, load};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
@@ -221,8 +221,9 @@ pub struct BackendFlags {
     #[arg(long, default_value = "auto")]
     pub backend: BackendName,
     /// A Vulkan device: its index or a part of its name as `gonio devices` prints them, or its kind
-    /// (discrete, integrated, virtual, software).
-    #[arg(long, value_name = "INDEX|NAME|KIND")]
+    /// (discrete, integrated, virtual, software); or `cpu`, the CPU backend. `render` takes several at once, as in
+    /// `0,1,cpu`, or `all`.
+    #[arg(long, value_name = "INDEX|NAME|KIND|cpu")]
     pub device: Option<String>,
     /// How kernels read the scene.
     #[arg(long, default_value = "auto")]
@@ -241,6 +242,12 @@ impl BackendFlags {
         let vulkan = || VulkanRenderer::new(data, self.vulkan_options());
         match self.backend {
             BackendName::Cpu => Ok(Box::new(CpuRenderer::new(data, self.threads)?)),
+            BackendName::Auto if self.device.as_deref() == Some(team::CPU) => {
+                Ok(Box::new(CpuRenderer::new(data, self.threads)?))
+            }
+            _ if self.device.as_deref() == Some(team::ALL) => {
+                Err(RenderError::NoDevice("--device all: this command takes one device".to_owned()))
+            }
             BackendName::Vulkan => self.proved(vulkan()?),
             BackendName::Auto if self.device.is_some() => self.proved(vulkan()?),
             BackendName::Auto => match vulkan() {
@@ -265,13 +272,18 @@ impl BackendFlags {
     }
 }
 
-/// The crop the flag asks for, checked against the frame; the whole frame without one.
+/// The crop the flag asks for, or else the scene, checked against the frame; the whole frame without either.
 pub fn crop_of(scene: &Scene, crop: Option<Crop>) -> anyhow::Result<Rect> {
     let whole = Rect::whole(scene.film.width, scene.film.height);
-    match crop {
-        None => Ok(whole),
-        Some(Crop(rect)) if whole.contains(&rect) => Ok(rect),
-        Some(Crop(rect)) => Err(Usage(format!("--crop {rect} is not inside the frame {whole}")).into()),
+    let own = scene.film.crop.map(|Window { x, y, width, height }| Rect { x, y, width, height });
+    let (what, rect) = match crop {
+        Some(Crop(rect)) => ("--crop", rect),
+        None => ("the scene's crop", own.unwrap_or(whole)),
+    };
+    match whole.contains(&rect) {
+        true => Ok(rect),
+        // --size may have made the frame smaller.
+        false => Err(Usage(format!("{what} {rect} is not inside the frame {whole}")).into()),
     }
 }
 

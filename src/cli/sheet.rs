@@ -113,7 +113,7 @@ pub fn write(
         flags.apply(film);
         let name = label.as_deref().unwrap_or_default();
         report += &format!("panel {name}\nfilm {}\nsamples {}\n", film.hash(), film.samples());
-        texts.extend(facts(film).map(|(keyword, text)| (keyword, format!("{name}: {text}"))));
+        texts.extend(facts(film).into_iter().map(|(keyword, text)| (keyword, format!("{name}: {text}"))));
         pictures.push((label.clone(), displayed(film, max)));
     }
     let whole = composed(sheet, &pictures)?;

@@ -1,9 +1,9 @@
 //! `gonio verify`: proofs, as one table.
 
-use super::setup::{BackendFlags, bake_scene, film_of};
+use super::setup::{BackendFlags, bake_scene, crop_of, film_of};
 use super::{EXIT_DIFFERS, Usage};
 use crate::film::read::read_picture;
-use crate::film::{Film, FilmError, Image, OutputFile, Rect, write};
+use crate::film::{Film, FilmError, Image, OutputFile, write};
 use crate::render::{Job, Watch};
 use crate::scene::{Scene, load};
 use crate::verify::mitsuba::{
@@ -21,7 +21,7 @@ use std::time::Instant;
 /// Side of a block of the documentation's pictures that is compared as one pixel: below it, filters and JPEG differ.
 const BLOCK: u32 = 4;
 /// Samples of each pixel of a documentation picture.
-const DISPLAY_SAMPLES: u32 = 16;
+const DISPLAY_SAMPLES: u32 = 32;
 
 #[derive(Args)]
 #[command(after_help = "\
@@ -95,7 +95,7 @@ fn run_case(args: &VerifyArgs, folder: &Path, case: &Case) -> anyhow::Result<Row
         measures: serde_json::Value::Null,
         seconds: 0.0,
     };
-    let mut scene = match load::load(&case.scene, &[]) {
+    let scene = match load::load(&case.scene, &[]) {
         Ok(scene) => scene,
         Err(error) if error.to_string().contains(load::mitsuba::NO_MEDIA) => {
             row.finding = "participating media".to_owned();
@@ -141,9 +141,10 @@ fn run_case(args: &VerifyArgs, folder: &Path, case: &Case) -> anyhow::Result<Row
         Reference::Displayed(path) => {
             let reference = read_picture(path)?.image;
             check_size(&case.scene, &scene, &reference)?;
-            (scene.film.width, scene.film.height) = (reference.width / BLOCK, reference.height / BLOCK);
-            let film = render(args, &scene, args.spp.unwrap_or(DISPLAY_SAMPLES * BLOCK * BLOCK), &mut row)?;
-            let (image, reference) = (film.resolve(), reduce(&reference, BLOCK));
+            let samples = args.spp.unwrap_or(DISPLAY_SAMPLES);
+            let film = render(args, &scene, samples, &mut row)?;
+            // In the reference's own size: a smaller picture's filter would reach over as many times larger pixels.
+            let (image, reference) = (reduce(&film.resolve(), BLOCK), reduce(&reference, BLOCK));
             let test = display_test(&image, &reference);
             row.outcome = if test.passes() { Outcome::Proved } else { Outcome::Unproved };
             let limits = DisplayTest::LIMITS;
@@ -152,7 +153,7 @@ fn run_case(args: &VerifyArgs, folder: &Path, case: &Case) -> anyhow::Result<Row
                 test.mean, limits.mean, test.absolute, limits.absolute
             );
             row.measures = serde_json::json!({
-                "mean_codes": test.mean, "absolute_codes": test.absolute, "film_hash": film.hash().to_string(),
+                "mean_codes": test.mean, "absolute_codes": test.absolute, "samples": samples, "film_hash": film.hash().to_string(),
             });
             if !test.passes()
                 && let Some(keep) = &args.keep
@@ -168,14 +169,12 @@ fn run_case(args: &VerifyArgs, folder: &Path, case: &Case) -> anyhow::Result<Row
 }
 
 fn check_size(path: &Path, scene: &Scene, reference: &Image) -> Result<(), FilmError> {
-    let film = &scene.film;
-    if (film.width, film.height) == (reference.width, reference.height) {
+    let film = scene.film.crop.map_or((scene.film.width, scene.film.height), |crop| (crop.width, crop.height));
+    if film == (reference.width, reference.height) {
         return Ok(());
     }
-    let message = format!(
-        "the film is {}x{}, but its reference {}x{}",
-        film.width, film.height, reference.width, reference.height
-    );
+    let message =
+        format!("the film is {}x{}, but its reference {}x{}", film.0, film.1, reference.width, reference.height);
     Err(FilmError::bad(path, message))
 }
 
@@ -187,7 +186,7 @@ fn render(args: &VerifyArgs, scene: &Scene, samples: u32, row: &mut Row) -> anyh
     let data = bake_scene(scene)?;
     let mut renderer = args.backend.renderer(&data)?;
     row.backend = renderer.name();
-    let crop = Rect::whole(scene.film.width, scene.film.height);
+    let crop = crop_of(scene, None)?;
     let mut film = film_of(scene, &data, crop);
     let abort = AtomicBool::new(false);
     let watch = Watch { abort: &abort, advance: &|_| {} };

@@ -49,6 +49,9 @@ struct Header {
     samples: Vec<[u32; 2]>,
     nan_count: u64,
     clamped_count: u64,
+    /// 0 where it is missing.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    limited_count: u64,
     transparent: bool,
     aovs: bool,
     tonemap: String,
@@ -56,6 +59,10 @@ struct Header {
     /// sRGB where it is missing, as in films of version 0.1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     gamma: Option<f32>,
+}
+
+fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 impl Header {
@@ -74,6 +81,7 @@ impl Header {
             samples: film.samples.as_slice().iter().map(|r| [r.start, r.end]).collect(),
             nan_count: film.nan_count,
             clamped_count: film.clamped_count,
+            limited_count: film.limited_count,
             transparent: spec.transparent,
             aovs: spec.aovs,
             tonemap: tonemap_name(spec.tonemap).into(),
@@ -83,7 +91,7 @@ impl Header {
     }
 
     /// Refuses what no film can be; the planes are still to come.
-    fn check(self) -> Result<(FilmSpec, SampleRanges, [u64; 2]), String> {
+    fn check(self) -> Result<(FilmSpec, SampleRanges, [u64; 3]), String> {
         let size = 1..=65_535;
         if !size.contains(&self.width) || !size.contains(&self.height) {
             return Err(format!("the frame is {}x{}; allowed is 1 to 65535 each", self.width, self.height));
@@ -125,7 +133,7 @@ impl Header {
             exposure: self.exposure,
             gamma: self.gamma,
         };
-        Ok((spec, ranges, [self.nan_count, self.clamped_count]))
+        Ok((spec, ranges, [self.nan_count, self.clamped_count, self.limited_count]))
     }
 }
 
@@ -270,7 +278,7 @@ pub fn read(file: &Path, source: &mut dyn Read) -> Result<Film, FilmError> {
     let mut header = vec![0; length as usize];
     input.take(&mut header, "header")?;
     let header: Header = serde_json::from_slice(&header).map_err(|e| input.bad(format!("film header: {e}")))?;
-    let (spec, samples, [nan_count, clamped_count]) =
+    let (spec, samples, [nan_count, clamped_count, limited_count]) =
         header.check().map_err(|e| input.bad(format!("film header: {e}")))?;
 
     let area = spec.crop.area();
@@ -289,7 +297,7 @@ pub fn read(file: &Path, source: &mut dyn Read) -> Result<Film, FilmError> {
     if input.take(&mut rest, "rest").is_ok() {
         return Err(input.bad("bytes follow the end of the film"));
     }
-    let film = Film { spec, sums, aovs, samples, nan_count, clamped_count };
+    let film = Film { spec, sums, aovs, samples, nan_count, clamped_count, limited_count };
     film.check_bounds().map_err(|e| input.bad(e))?;
     Ok(film)
 }

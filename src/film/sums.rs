@@ -80,6 +80,7 @@ pub struct Film {
     pub(super) samples: SampleRanges,
     pub(super) nan_count: u64,
     pub(super) clamped_count: u64,
+    pub(super) limited_count: u64,
 }
 
 /// The four sums of a record: lanes are two's complement in two words.
@@ -107,7 +108,7 @@ impl Film {
         let area = spec.crop.area();
         let aovs = spec.aovs.then(|| vec![AovSums::default(); area]);
         let samples = SampleRanges::default();
-        Self { spec, sums: vec![[0; 4]; area], aovs, samples, nan_count: 0, clamped_count: 0 }
+        Self { spec, sums: vec![[0; 4]; area], aovs, samples, nan_count: 0, clamped_count: 0, limited_count: 0 }
     }
 
     pub fn spec(&self) -> &FilmSpec {
@@ -147,6 +148,11 @@ impl Film {
     /// Samples whose sum was clamped to 2^16 film units.
     pub fn clamped_count(&self) -> u64 {
         self.clamped_count
+    }
+
+    /// Contributions that the scene's `clamp` made dimmer: the picture is darker than the scene.
+    pub fn limited_count(&self) -> u64 {
+        self.limited_count
     }
 
     /// Adds sums to the pixels of `rect` (full-frame coordinates, inside the crop), rows from the top. Which samples
@@ -208,6 +214,11 @@ impl Film {
         self.clamped_count = self.clamped_count.saturating_add(clamped_count);
     }
 
+    /// Counts contributions that the scene's `clamp` has limited; no part of the hash, which the sums they made are.
+    pub fn count_limited(&mut self, limited_count: u64) {
+        self.limited_count = self.limited_count.saturating_add(limited_count);
+    }
+
     /// Adds another film of the same picture with other samples. On an error this film is as it was.
     /// Names, version and display defaults stay this film's.
     pub fn merge(&mut self, other: &Film) -> Result<(), MergeError> {
@@ -233,6 +244,7 @@ impl Film {
             self.samples.insert(range.clone())?;
         }
         self.count(other.nan_count, other.clamped_count);
+        self.count_limited(other.limited_count);
         Ok(())
     }
 

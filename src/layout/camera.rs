@@ -26,9 +26,10 @@ pub struct Camera {
     pub forward: Vec3,
     /// Height of a pixel, world units: on the plane at distance 1 (perspective), anywhere (orthographic).
     pub pixel_size: f32,
-    /// Reserved for the thin lens: radius and focal distance.
+    /// The thin lens, world units: its radius, 0 for a pinhole, and how far along `forward` it shows things sharp.
     pub lens_radius: f32,
-    pub focal_distance: f32,
-    pub _pad1: u32,
-    pub _pad2: u32,
+    pub focus_distance: f32,
+    /// Added to s and t: what is seen lies off the middle of a larger picture.
+    pub shift_x: f32,
+    pub shift_y: f32,
 }

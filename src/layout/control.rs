@@ -14,7 +14,7 @@ pub struct DispatchArguments {
     pub z: u32,
 }
 
-/// One per device. 376 bytes.
+/// One per device. 380 bytes.
 /// A round is: schedule; extend (this round's chunk) and shadow (last round's queue); shade.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -31,8 +31,10 @@ pub struct Control {
     pub chunk_count: u32,
     /// Shadow rays the shadow kernel traces in this round.
     pub shadow_pending: u32,
-    /// Shadow rays appended by shade.
+    /// Shadow rays appended by shade, and where those that the shadow kernel traces begin: where it appends some itself the
+    /// queue has two halves, which take turns.
     pub shadow_count: u32,
+    pub shadow_first: u32,
     /// Limits set by the host: rays a chunk may hold, entries of levels 0 and >= 1, entries of the shadow queue.
     pub chunk_limit: u32,
     pub level0_capacity: u32,

@@ -14,12 +14,16 @@ pub const SAMPLER_SOBOL: u32 = 0;
 pub const SAMPLER_STRATIFIED: u32 = 1;
 pub const SAMPLER_INDEPENDENT: u32 = 2;
 
+pub const SHADOWS_OFF: u32 = 0;
+pub const SHADOWS_OPAQUE: u32 = 1;
+pub const SHADOWS_FILTERED: u32 = 2;
+
 pub const FILTER_BOX: u32 = 0;
 pub const FILTER_TENT: u32 = 1;
 /// Gaussian, Mitchell and other tabulated filters: piecewise constant, sampled through their inverse CDF.
 pub const FILTER_TABLE: u32 = 2;
 
-/// Scene-wide values. 272 bytes. `first_*` are offsets into the data heap in 16-byte words.
+/// Scene-wide values. 288 bytes. `first_*` are offsets into the data heap in 16-byte words.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SceneHeader {
@@ -39,7 +43,7 @@ pub struct SceneHeader {
     pub sampling: u32,
     /// For the stratified sampler: strata per axis, >= 1.
     pub strata: u32,
-    /// 1 if shadow rays are traced.
+    /// `SHADOWS_*`: what becomes of shadow rays.
     pub shadows: u32,
     /// `FILTER_*`.
     pub filter_kind: u32,
@@ -88,7 +92,16 @@ pub struct SceneHeader {
     pub level_count: u32,
     /// 1 if a ray that has left a surface can meet light: something glows or surrounds the scene (path).
     pub glows: u32,
-    pub _pad0: u32,
+    /// Shadow rays that one shaded ray sends, at most.
+    pub shadow_rays: u32,
+    /// First float in the table array of the media that have a rank: index and Beer coefficient of each, from rank 1 on.
+    pub media_table: u32,
+    /// 1 if media are nested by rank.
+    pub nested: u32,
+    /// 1 if some object casts no shadow (path).
+    pub shadowless: u32,
+    /// 1 if the camera looks through what glows (path).
+    pub hide_emitters: u32,
 }
 
 /// Intervals in the tabulated filter's inverse CDF.

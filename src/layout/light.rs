@@ -3,6 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
+use super::path::T_INFINITE;
+
 pub const LIGHT_POINT: u32 = 0;
 pub const LIGHT_DIRECTIONAL: u32 = 1;
 pub const LIGHT_SPOT: u32 = 2;
@@ -13,9 +15,12 @@ pub const ATTENUATION_INVERSE_SQUARE: u32 = 0;
 pub const ATTENUATION_POLYNOMIAL: u32 = 1;
 pub const ATTENUATION_NONE: u32 = 2;
 
-/// One light. 80 bytes.
+/// Entries of the table array that describe a slide.
+pub const SLIDE_ENTRIES: u32 = 10;
+
+/// One light. 112 bytes.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Light {
     pub position: Vec3,
     /// `LIGHT_*`.
@@ -32,10 +37,24 @@ pub struct Light {
     pub c: Vec3,
     /// Cosine of the half angle where a spot begins to fall off; equal to `cos_outer` for a hard edge.
     pub cos_inner: f32,
+    /// Warn's flaps: the box of the world that the light reaches, from -`T_INFINITE`
+    pub flaps_min: Vec3,
     /// Warn's exponent p: intensity times cos^p of the angle off the axis; 0 for none.
     pub exponent: f32,
+    /// to `T_INFINITE` where there are none.
+    pub flaps_max: Vec3,
     /// 1 if the light casts shadows.
     pub casts_shadow: u32,
+    /// 1 if something stands in a spot's beam (`shading/slide`); `table` is then the first of its `SLIDE_ENTRIES`.
+    pub slide: u32,
+    pub table: u32,
     pub _pad0: u32,
     pub _pad1: u32,
+}
+
+impl Default for Light {
+    /// Nothing but open flaps.
+    fn default() -> Self {
+        Self { flaps_min: Vec3::splat(-T_INFINITE), flaps_max: Vec3::splat(T_INFINITE), ..Self::zeroed() }
+    }
 }

@@ -27,6 +27,8 @@ pub const MODEL_MEASURED: u32 = 18;
 pub const MODEL_NULL: u32 = 19;
 /// Two materials, one after the other from `table` on: (1 - extra) of the first and extra of the second.
 pub const MODEL_BLEND: u32 = 20;
+/// Measured for directions of light (`shading/tabulated`).
+pub const MODEL_TABULATED: u32 = 21;
 
 /// Material flag: the filtered form of non-refractive transparency, I_1 + k_t O_t I_2.
 pub const MATERIAL_FILTERED: u32 = 1;
@@ -56,6 +58,8 @@ pub const MATERIAL_WARD_1992: u32 = 2048;
 pub const MATERIAL_WARD_DUER: u32 = 4096;
 /// Material flag: the model has another side: its frame's z leaves the outside, whichever side is seen.
 pub const MATERIAL_TRANSMISSIVE: u32 = 8192;
+/// Material flag: of a blend, the first material in front and the second behind.
+pub const MATERIAL_BY_SIDE: u32 = 32768;
 /// Where `MATERIAL_*` keeps `DISTRIBUTION_*` of lobe 0, two bits; lobe 1 in the two above.
 pub const DISTRIBUTION_SHIFT: u32 = 16;
 
@@ -121,6 +125,7 @@ pub struct Material {
     pub m1_v: f32,
     /// Ashikhmin's n across the tangent.
     pub exponent_v: f32,
-    /// Oren and Nayar's sigma; a plastic's diffuse reflectance from inside; a principled material's metallic; a blend's weight.
+    /// Oren and Nayar's sigma; a plastic's diffuse reflectance from inside; a principled material's metallic; a blend's weight;
+    /// of a clear body the rank of its medium.
     pub extra: f32,
 }

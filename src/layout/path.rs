@@ -59,16 +59,18 @@ pub struct PathState {
     pub path_id: u32,
     /// Scattering events so far (passing straight through a pane is none).
     pub depth: u32,
-    /// What is still uncovered in front of this ray, for alpha; 0 off the camera's straight line.
+    /// On the camera's straight line (depth 0) what is still uncovered in front of this ray, for alpha. Off it 0, or with
+    /// filtered shadows how far before the ray's origin its direction was drawn: the way through panes (path).
     pub coverage: f32,
     /// Relative index of the medium the ray travels in (1 outside everything).
     pub eta: f32,
     /// Density per solid angle with which the ray's direction was drawn where it left a surface; 0 if no light sample there
-    /// could have had it: camera rays, directions of zero width, what has passed a pane (path).
+    /// could have had it: camera rays, directions of zero width, what has passed a pane that stops shadow rays (path).
     pub pdf: f32,
     /// Beer coefficient of that medium, per scene unit.
     pub absorption: Vec3,
-    pub _pad1: u32,
+    /// Media that the ray is inside of, where they have ranks (`shading/interior`).
+    pub interior: u32,
 }
 
 /// A shadow ray with the light it carries if nothing is in the way. 80 bytes.
@@ -81,6 +83,8 @@ pub struct ShadowRay {
     pub slot: u32,
     /// Hash that dithers the conversion to fixed point (`film` in transport).
     pub dither: u32,
-    pub _pad0: u32,
-    pub _pad1: u32,
+    /// Panes passed so far.
+    pub layer: u32,
+    /// 1 if the scene's `clamp` has limited the contribution.
+    pub limited: u32,
 }

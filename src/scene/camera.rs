@@ -1,6 +1,6 @@
 //! The camera as written.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// How the image plane is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +11,15 @@ pub enum Projection {
     Orthographic { height: f32 },
 }
 
+/// A thin lens in the eye's plane, perpendicular to the view; what is at the distance of focus is sharp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Scene units, > 0.
+    pub radius: f32,
+    /// From the lens to the plane of focus along the view, scene units, > 0.
+    pub focus_distance: f32,
+}
+
 /// Where the picture is taken from. `eye`, `target` differ and `up` is not parallel to the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -18,4 +27,10 @@ pub struct Camera {
     pub target: Vec3,
     pub up: Vec3,
     pub projection: Projection,
+    /// None: a pinhole, all is sharp.
+    pub lens: Option<Lens>,
+    /// The picture is a part of a larger one: this many of its own widths to the right of the middle, and heights above.
+    pub shift: Vec2,
+    /// Left and right are swapped, as in a mirror.
+    pub mirrored: bool,
 }

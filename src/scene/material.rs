@@ -189,11 +189,16 @@ pub enum Model {
     Null,
     /// Shown as it is, unlit.
     Emissive,
-    /// (1 - weight) a + weight b; the children may be blends again.
+    /// (1 - weight) a + weight b; the children may be blends again. What the blend itself emits adds to what they do.
     Blend {
         weight: f32,
         a: MaterialId,
         b: MaterialId,
+    },
+    /// One material in front, another behind; they may be blends.
+    Sides {
+        front: MaterialId,
+        back: MaterialId,
     },
 }
 
@@ -273,6 +278,9 @@ pub struct Material {
     pub transparency: Option<Transparency>,
     /// Coverage, 0 to 1: the rest passes straight through.
     pub opacity: f32,
+    /// Of clear bodies (`Dielectric`, `RoughDielectric`): where two overlap, the higher is there alone, of equal ones the
+    /// later material. None counts as 0; if no material says one, media do not nest.
+    pub priority: Option<u32>,
     /// The back is shaded like the front; else opaque models are black from behind.
     pub two_sided: bool,
     pub emission: Rgb,
@@ -297,6 +305,7 @@ impl Material {
             k_r: 0.0,
             transparency: None,
             opacity: 1.0,
+            priority: None,
             two_sided: true,
             emission: Rgb::ZERO,
             emission_two_sided: true,

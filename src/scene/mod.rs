@@ -14,16 +14,18 @@ pub mod table;
 pub mod texture;
 pub mod transform;
 
-pub use camera::{Camera, Projection};
+pub use camera::{Camera, Lens, Projection};
 pub use error::{Location, SceneError};
-pub use light::{Attenuation, IntensityUnit, Light, LightKind};
+pub use light::{Attenuation, Flaps, IntensityUnit, Light, LightKind, Slide};
 pub use material::{
     Channel, Distribution, Fresnel, Lobe, Masking, Material, Model, Parameter, Principled, TextureBinding,
     Transparency, WardNormalisation,
 };
 pub use mesh::Mesh;
-pub use settings::{Background, Environment, Film, Filter, Integrator, RenderSettings, Sampler, Shading, ToneMap};
-pub use table::Table;
+pub use settings::{
+    Background, Environment, Film, Filter, Integrator, RenderSettings, Sampler, Shading, Shadows, ToneMap, Window,
+};
+pub use table::{DirectionalTable, Table};
 pub use texture::{Pattern, PatternKind, Texture, TextureData, Wrap};
 pub use transform::Transform;
 

@@ -65,12 +65,23 @@ pub enum Shading {
     Phong,
 }
 
+/// A part of the frame, in pixels from its upper left corner; not empty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    pub x: u32,
+    pub y: u32,
+    pub width: u32,
+    pub height: u32,
+}
+
 /// The image plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
     /// Pixels, 1 to 65,535 each.
     pub width: u32,
     pub height: u32,
+    /// What of the frame is rendered; all of it if not given.
+    pub crop: Option<Window>,
     pub filter: Filter,
     /// e of `unit = 2^e`: the radiance that one film unit stands for.
     pub unit_exponent: i32,
@@ -133,6 +144,18 @@ impl Background {
     }
 }
 
+/// What shadow rays do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shadows {
+    /// None is traced.
+    Off,
+    /// Whatever they meet stops them; panes are not met (row 22's assumption), but by paths.
+    #[default]
+    Opaque,
+    /// Panes colour and weaken them.
+    Filtered,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderSettings {
     pub integrator: Integrator,
@@ -146,9 +169,11 @@ pub struct RenderSettings {
     pub min_weight: f32,
     /// Scattering events from which on Russian roulette may end a path, 0 to 65; more than `max_depth`: never (path).
     pub rr_depth: u32,
+    /// The camera sees neither what glows nor the background (path).
+    pub hide_emitters: bool,
     /// Largest channel of what one contribution of scattered light may add to a pixel (path).
     pub clamp: Option<f32>,
-    pub shadows: bool,
+    pub shadows: Shadows,
     /// Of objects that do not say otherwise; `local` only.
     pub shading: Shading,
 }

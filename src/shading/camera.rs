@@ -1,6 +1,6 @@
 //! From a point of the film to a ray.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::math::*;
 use crate::layout::{CAMERA_PERSPECTIVE, Camera};
@@ -21,8 +21,8 @@ pub struct CameraRay {
 /// the image plane through the eye.
 #[inline]
 pub fn camera_ray(camera: &Camera, film_x: f32, film_y: f32) -> CameraRay {
-    let s = film_x * camera.scale_x - 1.0;
-    let t = 1.0 - film_y * camera.scale_y;
+    let s = (film_x * camera.scale_x - 1.0) + camera.shift_x;
+    let t = (1.0 - film_y * camera.scale_y) + camera.shift_y;
     let offset = camera.right * s + camera.up * t;
     if camera.kind == CAMERA_PERSPECTIVE {
         return CameraRay {
@@ -37,6 +37,23 @@ pub fn camera_ray(camera: &Camera, film_x: f32, film_y: f32) -> CameraRay {
         direction: normalize3(camera.forward),
         cone_width: camera.pixel_size,
         cone_spread: 0.0,
+    }
+}
+
+/// The pinhole's ray `through` a film point, sent through point `p` (in the unit disk) of the thin lens instead: it meets
+/// the other in the plane of focus. Source: Cook, Porter and Carpenter 1984, "Distributed Ray Tracing"; Pharr, Jakob and
+/// Humphreys 2023, "Physically Based Rendering", section 5.2.3. The cone stays the pinhole's.
+#[inline]
+pub fn through_lens(camera: &Camera, through: CameraRay, p: Vec2) -> CameraRay {
+    let to_focus = through.direction * div(camera.focus_distance, dot3(through.direction, camera.forward));
+    let right = normalize3(camera.right) * (camera.lens_radius * p.x);
+    let up = normalize3(camera.up) * (camera.lens_radius * p.y);
+    let on_lens = right + up;
+    CameraRay {
+        origin: through.origin + on_lens,
+        direction: normalize3(to_focus - on_lens),
+        cone_width: through.cone_width,
+        cone_spread: through.cone_spread,
     }
 }
 
@@ -75,6 +92,15 @@ mod tests {
     }
 
     #[test]
+    fn a_shifted_picture_is_a_part_of_a_larger_one() {
+        for kind in [CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC] {
+            let shifted = Camera { shift_x: 0.5, shift_y: -0.25, ..camera(kind) };
+            // Half of half the width to the right and a quarter of half the height down.
+            assert_eq!(camera_ray(&shifted, 20.0, 10.0), camera_ray(&camera(kind), 30.0, 12.5));
+        }
+    }
+
+    #[test]
     fn orthographic_rays_are_parallel_and_start_at_their_film_point() {
         for (x, y, origin) in [
             (20.0, 10.0, Vec3::new(1.0, 2.0, 3.0)),
@@ -83,6 +109,24 @@ mod tests {
         ] {
             let ray = camera_ray(&camera(CAMERA_ORTHOGRAPHIC), x, y);
             assert_eq!((ray.origin, ray.direction), (origin, Vec3::NEG_Z), "({x}, {y})");
+        }
+    }
+
+    #[test]
+    fn rays_through_all_of_the_lens_meet_in_the_plane_of_focus() {
+        for kind in [CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC] {
+            let camera = Camera { lens_radius: 0.5, focus_distance: 4.0, ..camera(kind) };
+            for (x, y) in [(20.0, 10.0), (3.0, 17.5), (40.0, 0.0)] {
+                let pinhole = camera_ray(&camera, x, y);
+                let focus = pinhole.origin + pinhole.direction * (4.0 / -pinhole.direction.z);
+                for p in [Vec2::ZERO, Vec2::X, Vec2::NEG_Y, Vec2::new(-0.6, 0.7)] {
+                    let ray = through_lens(&camera, pinhole, p);
+                    assert_eq!(ray.origin, pinhole.origin + Vec3::new(0.5 * p.x, 0.5 * p.y, 0.0));
+                    assert!((ray.direction.length() - 1.0).abs() < 3e-7);
+                    let there = ray.origin + ray.direction * (4.0 / -ray.direction.z);
+                    assert!((there - focus).length() < 2e-6, "({x}, {y}) through {p}: {there}, not {focus}");
+                }
+            }
         }
     }
 }

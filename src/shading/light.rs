@@ -63,10 +63,24 @@ pub fn spot_factor(light: &Light, cos_axis: f32) -> f32 {
     ((t * t) * (3.0 - 2.0 * t)) * cos_power(cos_axis, light.exponent)
 }
 
-/// The light as seen from `position` (world). Zero radiance, but a valid direction, if the two coincide.
+/// Whether Warn's flaps, planes of constant x, y or z of the world, let the light reach `position`: it is between them on
+/// every axis (Warn 1983, "Lighting Controls for Synthetic Images": barn doors).
+#[inline]
+#[allow(clippy::manual_range_contains, reason = "to read like its twin")]
+pub fn within_flaps(light: &Light, position: Vec3) -> bool {
+    let (low, high) = (light.flaps_min, light.flaps_max);
+    (position.x >= low.x && position.x <= high.x)
+        && (position.y >= low.y && position.y <= high.y)
+        && (position.z >= low.z && position.z <= high.z)
+}
+
+/// The light as seen from `position` (world). Zero radiance, but a valid direction, if the two coincide or flaps are between.
 #[inline]
 #[allow(clippy::manual_range_contains, reason = "to read like its twin")]
 pub fn sample_light(light: &Light, position: Vec3) -> LightSample {
+    if !within_flaps(light, position) {
+        return no_light();
+    }
     if light.kind == LIGHT_DIRECTIONAL {
         return LightSample {
             wi: -light.direction,

@@ -1,8 +1,10 @@
 //! Light from things that have a size: which to sample, how, and how likely a ray that met one was to be such a sample.
 
+use super::DIMENSION_LIGHT_LEAF;
 use super::area_light::{
     area_to_solid_angle, sample_sphere_light, sample_triangle_light, solid_angle_ratio, sphere_pdf,
 };
+use super::local::emitted;
 use super::textured::material_at;
 use crate::layout::{
     EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_SPHERE, EMITTER_TEXTURED, Emitter, Hit, KIND_SPHERE, Ray, SceneView,
@@ -13,6 +15,7 @@ use crate::shading::light::{LightSample, no_light, sample_light};
 use crate::shading::material::{emission_material, own_weight};
 use crate::shading::math::{dot3, rcp};
 use crate::shading::sampling::SampleKey;
+use crate::shading::slide::slide_factor;
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_luminance};
 use crate::shading::warp::square_to_uniform_triangle;
 use crate::trace::ray::{transform_point, transform_vector};
@@ -50,8 +53,8 @@ fn textured_radiance(
         ..Hit::default()
     };
     let mut surface = surface_at(scene, &ray, &hit);
-    let material = material_at(scene, lit.wi, &hit, key, &mut surface);
-    spectrum_from_rgb(emission_material(&material) * own_weight(&material))
+    let material = material_at(scene, lit.wi, &hit, key, DIMENSION_LIGHT_LEAF, &mut surface);
+    spectrum_from_rgb(emitted(&surface, &material, -lit.wi) * own_weight(&material))
 }
 
 /// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1. `key`: of the
@@ -65,7 +68,11 @@ pub fn sample_emitter(scene: &SceneView, emitter: &Emitter, key: SampleKey, surf
         return LightSample { wi: seen.wi, distance: T_INFINITE, radiance, pdf_solid_angle: pdf };
     }
     if emitter.kind == EMITTER_LIGHT {
-        let mut lit = sample_light(&load_light(scene, emitter.instance), position);
+        let light = load_light(scene, emitter.instance);
+        let mut lit = sample_light(&light, position);
+        if light.slide != 0 {
+            lit.radiance *= slide_factor(scene, &light, lit.wi);
+        }
         lit.radiance *= rcp(emitter.density);
         return lit;
     }
@@ -87,11 +94,11 @@ pub fn casts_shadow(scene: &SceneView, emitter: &Emitter) -> bool {
 }
 
 /// Density per solid angle with which `sample_emitter`, its choice included, would have drawn the direction of a ray that
-/// left `origin` and met a glowing surface at `t`.
-pub fn pdf_emitter(scene: &SceneView, origin: Vec3, direction: Vec3, t: f32, surface: &Surface) -> f32 {
+/// left `origin` and met a glowing surface of material `named` at `t`.
+pub fn pdf_emitter(scene: &SceneView, origin: Vec3, direction: Vec3, t: f32, surface: &Surface, named: u32) -> f32 {
     let instance = load_instance(scene, surface.instance);
     // Without textures: what bake made the choice by.
-    let material = load_material(scene, surface.material);
+    let material = load_material(scene, named);
     let shown = spectrum_from_rgb(emission_material(&material) * own_weight(&material));
     let density = instance.light_density * spectrum_luminance(shown);
     if surface.kind == KIND_SPHERE {

@@ -1,11 +1,12 @@
 //! The camera ray of a sample.
 
-use super::DIMENSION_FILTER;
+use super::{DIMENSION_FILTER, DIMENSION_LENS};
 use crate::layout::{Batch, INVALID, PathState, Ray, SceneHeader, SceneView, T_INFINITE};
-use crate::shading::camera::camera_ray;
+use crate::shading::camera::{camera_ray, through_lens};
 use crate::shading::filter::sample_filter;
 use crate::shading::sampling::{SampleKey, sample_2d};
 use crate::shading::spectrum::spectrum_from_rgb;
+use crate::shading::warp::square_to_disk;
 use glam::Vec3;
 
 /// The key of a path's random numbers: they depend on nothing else.
@@ -30,7 +31,10 @@ pub fn generate(scene: &SceneView, batch: &Batch, slot: u32) -> PathState {
     let filter = sample_filter(scene, sample_2d(key, DIMENSION_FILTER));
     let film_x = x as f32 + 0.5 + filter.offset.x;
     let film_y = y as f32 + 0.5 + filter.offset.y;
-    let camera = camera_ray(&scene.header.camera, film_x, film_y);
+    let mut camera = camera_ray(&scene.header.camera, film_x, film_y);
+    if scene.header.camera.lens_radius > 0.0 {
+        camera = through_lens(&scene.header.camera, camera, square_to_disk(sample_2d(key, DIMENSION_LENS)));
+    }
     PathState {
         ray: Ray {
             origin: camera.origin,
@@ -52,6 +56,6 @@ pub fn generate(scene: &SceneView, batch: &Batch, slot: u32) -> PathState {
         eta: 1.0,
         pdf: 0.0,
         absorption: Vec3::ZERO,
-        _pad1: 0,
+        interior: 0,
     }
 }

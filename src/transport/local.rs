@@ -2,14 +2,15 @@
 
 use super::{DITHER_LIGHT, DITHER_SURFACE, LOBE_THROUGH, Queues, add_contribution, push_path, push_shadow};
 use crate::layout::{
-    Hit, Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_FILTERED, MATERIAL_ONE_SIDED,
-    MATERIAL_TRANSMISSIVE, Material, PathState, SceneView, ShadowRay, load_light,
+    Hit, Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_ONE_SIDED, MATERIAL_TRANSMISSIVE, Material,
+    PathState, SceneView, ShadowRay, load_light,
 };
 use crate::shading::frame::{Frame, frame_from_normal, frame_from_tangent, to_local};
 use crate::shading::light::sample_light;
-use crate::shading::material::{ambient_material, emission_material, eval_material, is_delta, own_weight};
+use crate::shading::material::{ambient_material, emission_material, eval_material, is_delta, own_weight, pane_tint};
 use crate::shading::math::{dot3, normalize3};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine};
+use crate::shading::slide::slide_factor;
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_max, spectrum_zero};
 use crate::trace::spawn::{spawn_ray, spawn_through};
 use crate::trace::surface::{Surface, surface_tangent};
@@ -114,7 +115,10 @@ pub fn shade_local(
         let frame = shading_frame(scene, surface, material, wo);
         for index in 0..scene.header.light_count {
             let light: Light = load_light(scene, index);
-            let lit = sample_light(&light, surface.position);
+            let mut lit = sample_light(&light, surface.position);
+            if light.slide != 0 {
+                lit.radiance *= slide_factor(scene, &light, lit.wi);
+            }
             let seen = light_contribution(scene, weight, material, frame, wo, lit.wi, lit.radiance);
             if spectrum_max(seen) > 0.0 {
                 let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
@@ -123,7 +127,7 @@ pub fn shade_local(
                     let ray = spawn_ray(&point.shadow_from, lit.wi, lit.distance * SHADOW_END);
                     push_shadow(
                         queues,
-                        ShadowRay { ray, contribution, slot: path.slot, dither: light_dither, _pad0: 0, _pad1: 0 },
+                        ShadowRay { ray, contribution, slot: path.slot, dither: light_dither, layer: 0, limited: 0 },
                     );
                 } else {
                     add_contribution(queues, scene.header.film_scale, path.slot, contribution, light_dither);
@@ -136,10 +140,7 @@ pub fn shade_local(
 /// Lets the ray go on through a pane.
 pub fn shade_through(scene: &SceneView, path: &PathState, surface: &Surface, material: &Material, queues: &mut Queues) {
     if material.k_t > 0.0 {
-        let mut tint = Vec4::splat(material.k_t);
-        if (material.flags & MATERIAL_FILTERED) != 0 {
-            tint *= spectrum_from_rgb(material.transmit_color);
-        }
+        let tint = pane_tint(material);
         let mut through = *path;
         through.throughput = path.throughput * tint;
         through.coverage = path.coverage * material.k_t;

@@ -11,8 +11,10 @@ pub mod faceted;
 pub mod film;
 pub mod generate;
 pub mod local;
+pub mod nested;
 pub mod path;
 pub mod shade;
+pub mod shadow;
 pub mod textured;
 pub mod weight;
 pub mod whitted;
@@ -22,12 +24,14 @@ use glam::{Vec3, Vec4};
 
 /// Dimensions of a sample's random numbers: pairs drawn for the named purpose.
 pub const DIMENSION_FILTER: u32 = 0;
+pub const DIMENSION_LENS: u32 = 1;
 pub const DIMENSION_LIGHT_CHOICE: u32 = 16;
 pub const DIMENSION_LIGHT: u32 = 17;
 pub const DIMENSION_BSDF: u32 = 18;
 pub const DIMENSION_LOBE: u32 = 19;
 pub const DIMENSION_ROULETTE: u32 = 20;
 pub const DIMENSION_PANE: u32 = 21;
+pub const DIMENSION_LIGHT_LEAF: u32 = 22;
 pub const DIMENSION_LEAF: u32 = 32;
 /// Dither of contributions: emission and ambient, background, alpha; light i takes `DITHER_LIGHT + i`.
 pub const DITHER_SURFACE: u32 = 0x1000_0000;
@@ -67,7 +71,7 @@ pub fn push_shadow(queues: &mut Queues, shadow: ShadowRay) {
     queues.shadows.push(shadow);
 }
 
-/// Notes that a contribution was limited.
+/// Notes that a contribution which reaches the film was limited.
 pub fn count_limited(queues: &mut Queues) {
     queues.limited_count += 1;
 }

@@ -3,10 +3,11 @@
 use super::faceted::{faceted, shading_point, shading_points};
 use super::generate::sample_key;
 use super::local::{shade_local, shade_through};
+use super::nested::meet_interface;
 use super::path::{shade_escape, shade_path};
 use super::textured::material_at;
 use super::whitted::shade_whitted;
-use super::{DITHER_BACKGROUND, Queues, add_aov, add_contribution};
+use super::{DIMENSION_LEAF, DITHER_BACKGROUND, Queues, add_aov, add_contribution};
 use crate::layout::{
     Hit, INTEGRATOR_LOCAL, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, PathState, SceneView, load_instance,
 };
@@ -51,14 +52,17 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     }
     let mut surface = surface_at(scene, &path.ray, hit);
     let named = surface.material;
-    let material = material_at(scene, path.ray.direction, hit, key, &mut surface);
+    let mut material = material_at(scene, path.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
+    if scene.header.nested != 0 && !meet_interface(scene, &path, &surface, &mut material, queues) {
+        return;
+    }
     if scene.header.aovs != 0 && path.path_id == 0 {
         let albedo = albedo_material(&material);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
         add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
     if scene.header.integrator == INTEGRATOR_PATH {
-        shade_path(scene, &path, key, hit, &surface, &material, queues);
+        shade_path(scene, &path, key, hit, &surface, named, &material, queues);
         return;
     }
     let local = scene.header.integrator == INTEGRATOR_LOCAL;
@@ -67,7 +71,7 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
         let mut point = shading_point(scene, &path.ray, hit, &surface, flags, index);
         let mut material_there = material;
         if faceted(flags) {
-            material_there = material_at(scene, -point.wo, &point.hit, key, &mut point.surface);
+            material_there = material_at(scene, -point.wo, &point.hit, key, DIMENSION_LEAF, &mut point.surface);
         }
         shade_local(scene, &path, key, &point, &material_there, queues);
     }

@@ -1,13 +1,12 @@
 //! The material of a point: its record with vertex colour and textures applied.
 
-use super::DIMENSION_LEAF;
 use crate::layout::{
-    Hit, MAX_LEAVES, MODEL_BLEND, Material, PARAMETER_BUMP, PARAMETER_NORMAL, SceneView, TEXTURES_MOST, load_material,
-    load_texture,
+    Hit, MATERIAL_BY_SIDE, MAX_LEAVES, MODEL_BLEND, Material, PARAMETER_BUMP, PARAMETER_NORMAL, SceneView,
+    TEXTURES_MOST, load_material, load_texture,
 };
 use crate::shading::coordinate::texture_uv;
 use crate::shading::footprint::{cone_footprint, mapped_normal, raised_normal, texture_gradients};
-use crate::shading::math::{clamp_, div, max_};
+use crate::shading::math::{clamp_, div, dot3, max_};
 use crate::shading::parameter::{apply_parameter, channel_value};
 use crate::shading::sampling::{SampleKey, sample_1d};
 use crate::shading::texture::{filter_texture, texture_detail};
@@ -63,27 +62,40 @@ fn apply_textures(scene: &SceneView, bare: Material, direction: Vec3, hit: &Hit,
 }
 
 /// The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour. Of a blend it is
-/// one that is none, drawn by the weights, (1 - extra) of the first and extra of the second; `surface.material` names it.
-/// `key`: of the path, which meets one surface at most.
-pub fn material_at(scene: &SceneView, direction: Vec3, hit: &Hit, key: SampleKey, surface: &mut Surface) -> Material {
+/// one that is none, drawn by the weights, (1 - extra) of the first and extra of the second, or by the side that is seen;
+/// `surface.material` names it.
+/// `key`: of the path, which draws with `dimension` at one surface at most.
+pub fn material_at(
+    scene: &SceneView,
+    direction: Vec3,
+    hit: &Hit,
+    key: SampleKey,
+    dimension: u32,
+    surface: &mut Surface,
+) -> Material {
     let mut material = load_material(scene, surface.material);
-    let mut u = if material.model == MODEL_BLEND { sample_1d(key, DIMENSION_LEAF) } else { 0.0 };
-    let mut level = 0;
-    let mut blends = true;
-    while blends {
+    let mut u = if material.model == MODEL_BLEND { sample_1d(key, dimension) } else { 0.0 };
+    let mut covered = 1.0;
+    for level in 0..MAX_LEAVES {
         material.color *= surface.color;
         material = apply_textures(scene, material, direction, hit, surface);
-        level += 1;
-        // Bake lets no blend be deeper.
-        blends = material.model == MODEL_BLEND && level < MAX_LEAVES;
-        if blends {
-            let weight = clamp_(material.extra, 0.0, 1.0);
-            let second = u < weight;
-            // What is left of u is as random again.
-            u = if second { div(u, weight) } else { div(u - weight, 1.0 - weight) };
-            surface.material = if second { material.table + 1 } else { material.table };
-            material = load_material(scene, surface.material);
+        // Where a blend has holes, what it blends has them too.
+        if covered < 1.0 {
+            material.k_t = 1.0 - covered * (1.0 - material.k_t);
         }
+        // Bake lets no blend be deeper.
+        if material.model != MODEL_BLEND || level + 1 == MAX_LEAVES {
+            break;
+        }
+        covered = 1.0 - material.k_t;
+        let by_side = (material.flags & MATERIAL_BY_SIDE) != 0;
+        let weight = clamp_(material.extra, 0.0, 1.0);
+        let second = if by_side { dot3(surface.normal_geometric, direction) > 0.0 } else { u < weight };
+        // What is left of u is as random again.
+        let rest = if second { div(u, weight) } else { div(u - weight, 1.0 - weight) };
+        u = if by_side { u } else { rest };
+        surface.material = if second { material.table + 1 } else { material.table };
+        material = load_material(scene, surface.material);
     }
     material
 }

@@ -1,6 +1,7 @@
 //! Ray tracing as a recursive local model. Source: Whitted 1980, "An Improved Illumination Model for Shaded Display".
 
 use super::local::{facing_normal, is_hidden_back};
+use super::nested::medium_absorption;
 use super::{LOBE_MIRROR, LOBE_REFRACT, Queues, push_path};
 use crate::layout::{
     MODEL_DIELECTRIC, MODEL_ROUGH_DIELECTRIC, MODEL_THIN_DIELECTRIC, Material, PathState, SceneView, T_INFINITE,
@@ -9,6 +10,7 @@ use crate::shading::delta::thin_reflectance;
 use crate::shading::dielectric::refract_local;
 use crate::shading::frame::{frame_from_normal, to_local, to_world};
 use crate::shading::fresnel::fresnel_dielectric;
+use crate::shading::interior::cross_interface;
 use crate::shading::material::{mirror_weight, own_weight};
 use crate::shading::math::{dot3, rcp};
 use crate::shading::sampling::hash_combine;
@@ -60,7 +62,7 @@ pub fn is_refracting(material: &Material) -> bool {
 }
 
 /// Follows the mirror branch of any material and both branches of a dielectric, each with its Fresnel weight.
-/// Media do not nest: a ray that leaves a dielectric is outside. Radiance is not scaled by eta^2 (Whitted's model).
+/// Without ranks media do not nest: a ray that leaves a dielectric is outside. Radiance is not scaled by eta^2 (Whitted's model).
 pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, material: &Material, queues: &mut Queues) {
     let wo = -path.ray.direction;
     if !is_refracting(material) {
@@ -92,5 +94,9 @@ pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, mat
     let mut inside = *path;
     inside.eta = if entering { material.eta.x } else { 1.0 };
     inside.absorption = if entering { material.absorption } else { Vec3::ZERO };
+    if scene.header.nested != 0 {
+        inside.interior = cross_interface(path.interior, material, entering);
+        inside.absorption = medium_absorption(scene, inside.interior);
+    }
     push_branch(scene, &inside, surface, to_world(frame, refraction.wt), weight, LOBE_REFRACT, queues);
 }

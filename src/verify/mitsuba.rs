@@ -179,8 +179,8 @@ pub fn display_test(image: &Image, reference: &Image) -> DisplayTest {
     DisplayTest { mean, absolute: absolute / (3.0 * pixels) }
 }
 
-/// The image with each `factor` by `factor` block as the mean of its values, clamped to 0 and 1 as a display does; what is
-/// left over at the right and bottom goes.
+/// The image with each `factor` by `factor` block as the mean of its values, what is left over at the right and bottom goes.
+/// Noise goes beyond white and comes back in a mean: it is not cut off first, which would darken all that is noisy.
 pub fn reduce(image: &Image, factor: u32) -> Image {
     let (width, height) = (image.width / factor, image.height / factor);
     let mut pixels = Vec::with_capacity((width * height) as usize);
@@ -189,7 +189,7 @@ pub fn reduce(image: &Image, factor: u32) -> Image {
             let mut sum = [0.0f64; 4];
             for (dy, dx) in (0..factor).flat_map(|dy| (0..factor).map(move |dx| (dy, dx))) {
                 let pixel = image.pixels[((y * factor + dy) * image.width + x * factor + dx) as usize];
-                (0..4).for_each(|lane| sum[lane] += f64::from(pixel[lane].clamp(0.0, 1.0)));
+                (0..4).for_each(|lane| sum[lane] += f64::from(pixel[lane]));
             }
             pixels.push(sum.map(|v| (v / f64::from(factor * factor)) as f32));
         }
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn blocks_are_reduced_to_their_means() {
-        let image = Image { width: 3, height: 2, pixels: [0.0, 1.0, 9.0, 1.0, 0.0, 9.0].map(|v| [v; 4]).to_vec() };
+        let image = Image { width: 3, height: 2, pixels: [0.0, 1.5, 9.0, 0.5, 0.0, 9.0].map(|v| [v; 4]).to_vec() };
         assert_eq!(reduce(&image, 2), Image { width: 1, height: 1, pixels: vec![[0.5; 4]] });
     }
 }

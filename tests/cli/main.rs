@@ -11,3 +11,4 @@ mod pictures;
 mod render;
 mod signals;
 mod support;
+mod team;

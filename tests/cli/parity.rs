@@ -1,6 +1,6 @@
 //! `gonio parity`.
 
-use super::support::{Folder, has_device};
+use super::support::{Folder, ended, has_device};
 
 #[test]
 fn device_agrees_with_the_cpu_through_both_fetch_paths() {
@@ -92,5 +92,80 @@ fn expect_file_that_is_missing_or_no_record_is_refused() {
         folder.file("expect.json", bad);
         let message = folder.fails(65, &args);
         assert!(message.starts_with("error: expect.json: ") && message.lines().count() == 1, "{message}");
+    }
+}
+
+/// A box with a lamp, a glass ball and a blend: long paths of many kinds.
+const BOX: &str = r#"
+[render]
+integrator = "path"
+max_depth = 64
+rr_depth = 5
+samples = 4
+[film]
+size = [16, 12]
+[camera]
+eye = [0, 1, 3.4]
+target = [0, 1, 0]
+[background]
+color = 0.1
+[[material]]
+name = "white"
+color = 0.7
+[[material]]
+name = "lamp"
+color = 0
+emission = 6
+[[material]]
+name = "glass"
+model = "dielectric"
+[[material]]
+name = "metal"
+model = "rough-conductor"
+metal = "Au"
+alpha = 0.3
+[[material]]
+name = "mixed"
+model = "blend"
+materials = ["white", "metal"]
+[[object]]
+name = "room"
+shape = "box"
+scale = [4, 4, 8]
+material = "white"
+[[object]]
+name = "lamp"
+shape = "sphere"
+scale = 0.3
+translate = [0, 1.8, 0]
+material = "lamp"
+[[object]]
+name = "glass"
+shape = "sphere"
+scale = 0.5
+translate = [0.6, 0.6, 0.4]
+material = "glass"
+[[object]]
+name = "mixed"
+shape = "sphere"
+scale = 0.5
+translate = [-0.6, 0.6, 0]
+material = "mixed"
+"#;
+
+#[test]
+fn long_paths_agree_whatever_the_width_of_a_software_device_s_vectors() {
+    if !has_device() {
+        return;
+    }
+    let folder = Folder::new();
+    folder.file("box.toml", BOX);
+    // Mesa's software driver takes its subgroups' size from this; other drivers do not look at it.
+    for bits in ["128", "256", "512"] {
+        let mut command = folder.command(&["parity", "box.toml"]);
+        let ended = ended(command.env("LP_NATIVE_VECTOR_WIDTH", bits));
+        assert_eq!(ended.code, Some(0), "{bits}: {}{}", ended.text(), ended.stderr);
+        let out = ended.text();
+        assert_eq!(out.lines().filter(|line| line.starts_with("box.toml: 0 of 192 pixels differ")).count(), 2, "{out}");
     }
 }

@@ -1,7 +1,7 @@
 //! Scenes and rays for the tests of trace and bake.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use gonio::layout::{INVALID, Ray, T_INFINITE};
 use gonio::scene::*;
 
@@ -124,6 +124,7 @@ pub fn empty_scene() -> Scene {
         film: Film {
             width: 64,
             height: 32,
+            crop: None,
             filter: Filter::Box { radius: 0.5 },
             unit_exponent: 0,
             tonemap: ToneMap::Clamp,
@@ -139,7 +140,8 @@ pub fn empty_scene() -> Scene {
             min_weight: 0.001,
             rr_depth: 5,
             clamp: None,
-            shadows: true,
+            hide_emitters: false,
+            shadows: Shadows::Opaque,
             shading: Shading::Phong,
         },
         camera: Camera {
@@ -147,6 +149,9 @@ pub fn empty_scene() -> Scene {
             target: Vec3::ZERO,
             up: Vec3::Y,
             projection: Projection::Perspective { fov_y: 1.0 },
+            lens: None,
+            shift: Vec2::ZERO,
+            mirrored: false,
         },
         background: Background::BLACK,
         ambient: Vec3::ZERO,

@@ -97,8 +97,8 @@ records! {
         transmit_color, first_texture, absorption, table, emission, texture_count, m0_v, m1_v, exponent_v, extra,
     }
     Light {
-        position, kind, direction, attenuation, intensity, cos_outer, c, cos_inner, exponent, casts_shadow, _pad0,
-        _pad1,
+        position, kind, direction, attenuation, intensity, cos_outer, c, cos_inner, flaps_min, exponent,
+        flaps_max, casts_shadow, slide, table, _pad0, _pad1,
     }
     Texture {
         width, height, first_word, format, wrap_u, wrap_v, magnify, level_count, scale_u, scale_v, offset_u, offset_v,
@@ -106,11 +106,11 @@ records! {
     }
     Hit { t, b1, b2, instance, primitive, _pad0, _pad1, _pad2 }
     PathState {
-        ray, throughput, slot, pixel, sample_index, path_id, depth, coverage, eta, pdf, absorption, _pad1,
+        ray, throughput, slot, pixel, sample_index, path_id, depth, coverage, eta, pdf, absorption, interior,
     }
-    ShadowRay { ray, contribution, slot, dither, _pad0, _pad1 }
+    ShadowRay { ray, contribution, slot, dither, layer, limited }
     Camera {
-        eye, kind, right, scale_x, up, scale_y, forward, pixel_size, lens_radius, focal_distance, _pad1, _pad2,
+        eye, kind, right, scale_x, up, scale_y, forward, pixel_size, lens_radius, focus_distance, shift_x, shift_y,
     }
     SceneHeader {
         camera, ambient, integrator, background_bottom, max_depth, background_top, min_weight, seed, sampling,
@@ -118,7 +118,8 @@ records! {
         light_count, material_count, first_instance, first_top_instance, first_face, first_vertex, first_material,
         first_light, first_texture, first_texel, first_table, film_scale, hide_background, aovs, top_margin,
         emitter_count, first_emitter, environment_maps, first_environment_map, emitter_table, environment_density,
-        rr_depth, clamp, level_count, glows, _pad0,
+        rr_depth, clamp, level_count, glows, shadow_rays, media_table, nested, shadowless,
+        hide_emitters,
     }
     Batch {
         crop_x, crop_y, crop_width, crop_height, first_pixel, pixel_count, first_sample, sample_count, slot_count,
@@ -129,7 +130,7 @@ records! {
     Ray { origin, t_max, direction, skip_instance, skip_primitive, skip_inward, cone_width, cone_spread }
     DispatchArguments { x, y, z }
     Control {
-        extend, shadow, shade, done, chunk_level, chunk_first, chunk_count, shadow_pending, shadow_count,
+        extend, shadow, shade, done, chunk_level, chunk_first, chunk_count, shadow_pending, shadow_count, shadow_first,
         chunk_limit, level0_capacity, level_capacity, shadow_capacity, overflows, nan_count, clamped_count,
         limited_count, closest_rays, shadow_rays, rounds, level_count,
     }
@@ -172,13 +173,13 @@ constants! {
     KIND_MESH KIND_SPHERE INSTANCE_NO_SHADOW INSTANCE_MIRRORED INSTANCE_FLAT INSTANCE_GOURAUD
     INTEGRATOR_LOCAL INTEGRATOR_WHITTED INTEGRATOR_PATH
     SAMPLER_SOBOL SAMPLER_STRATIFIED SAMPLER_INDEPENDENT
-    FILTER_BOX FILTER_TENT FILTER_TABLE FILTER_KNOTS
-    LIGHT_POINT LIGHT_DIRECTIONAL LIGHT_SPOT
+    SHADOWS_OFF SHADOWS_OPAQUE SHADOWS_FILTERED FILTER_BOX FILTER_TENT FILTER_TABLE FILTER_KNOTS
+    LIGHT_POINT LIGHT_DIRECTIONAL LIGHT_SPOT SLIDE_ENTRIES
     ATTENUATION_INVERSE_SQUARE ATTENUATION_POLYNOMIAL ATTENUATION_NONE
     MODEL_LAMBERT MODEL_PHONG MODEL_BLINN_PHONG MODEL_COOK_TORRANCE MODEL_MIRROR MODEL_DIELECTRIC MODEL_EMISSIVE
-    MODEL_OREN_NAYAR MODEL_WARD MODEL_ASHIKHMIN_SHIRLEY MODEL_KELEMEN MODEL_CONDUCTOR MODEL_ROUGH_CONDUCTOR MODEL_ROUGH_DIELECTRIC MODEL_THIN_DIELECTRIC MODEL_PLASTIC MODEL_ROUGH_PLASTIC MODEL_PRINCIPLED MODEL_MEASURED MODEL_NULL MODEL_BLEND
+    MODEL_OREN_NAYAR MODEL_WARD MODEL_ASHIKHMIN_SHIRLEY MODEL_KELEMEN MODEL_CONDUCTOR MODEL_ROUGH_CONDUCTOR MODEL_ROUGH_DIELECTRIC MODEL_THIN_DIELECTRIC MODEL_PLASTIC MODEL_ROUGH_PLASTIC MODEL_PRINCIPLED MODEL_MEASURED MODEL_NULL MODEL_BLEND MODEL_TABULATED
     MATERIAL_FILTERED MATERIAL_CONDUCTOR MATERIAL_LAFORTUNE MATERIAL_D_1982
-    MATERIAL_SCHLICK MATERIAL_SMITH MATERIAL_ANISOTROPIC MATERIAL_NONLINEAR MATERIAL_COMPENSATE MATERIAL_ONE_SIDED MATERIAL_EMIT_ONE_SIDED MATERIAL_WARD_1992 MATERIAL_WARD_DUER MATERIAL_TRANSMISSIVE DISTRIBUTION_SHIFT ALBEDO_HEADER ALBEDO_KNOTS MAX_LEAVES
+    MATERIAL_SCHLICK MATERIAL_SMITH MATERIAL_ANISOTROPIC MATERIAL_NONLINEAR MATERIAL_COMPENSATE MATERIAL_ONE_SIDED MATERIAL_EMIT_ONE_SIDED MATERIAL_WARD_1992 MATERIAL_WARD_DUER MATERIAL_TRANSMISSIVE MATERIAL_BY_SIDE DISTRIBUTION_SHIFT ALBEDO_HEADER ALBEDO_KNOTS MAX_LEAVES
     DISTRIBUTION_BECKMANN DISTRIBUTION_GAUSSIAN DISTRIBUTION_TROWBRIDGE_REITZ DISTRIBUTION_PHONG
     EMITTER_TRIANGLE EMITTER_SPHERE EMITTER_LIGHT EMITTER_ENVIRONMENT EMITTER_ONE_SIDED EMITTER_TEXTURED
     T_INFINITE

@@ -3,11 +3,11 @@
 // tests/layout.rs reflects the SPIR-V of this kernel (names, types, offsets, strides, constants), which needs no device.
 //
 // On a device, one dispatch checks one record. Set 0 (several blocks share each binding: one per record):
-// * binding 0: a SceneHeader (272 bytes), then the records to read, back to back.
+// * binding 0: a SceneHeader (288 bytes), then the records to read, back to back.
 //   `header.first_*` of the record must be FIRST_WORD; give the others 0xffffff so that a mix-up is seen.
 // * binding 1: the same records as they were read, from byte 0 on; or the constants, one u32 each.
 // * push constants: `record` (its number in `main`, or RECORD_COUNT for the constants), `count` (records to read).
-// One invocation a record. What binding 1 holds must be what was given from byte 272 on: words 0, 1, 2, ... show
+// One invocation a record. What binding 1 holds must be what was given from byte 288 on: words 0, 1, 2, ... show
 // where a misplaced member came from.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
@@ -17,7 +17,7 @@ layout(local_size_x_id = 0, local_size_y = 1, local_size_z = 1) in;
 layout(push_constant, scalar) uniform Choice { uint record; uint count; };
 
 const uint RECORD_COUNT = 21u;
-const uint FIRST_WORD = 17u;
+const uint FIRST_WORD = 18u;
 layout(set = 0, binding = 0, scalar) readonly buffer Heap { uvec4 heap[]; };
 
 // What kernels/bindings.glsl declares, over one heap: `load_*` reads it word by word.
@@ -194,6 +194,12 @@ void store_constants() {
     constants[117] = CHANNEL_A;
     constants[118] = CHANNEL_RGB;
     constants[119] = TEXTURES_MOST;
+    constants[120] = MODEL_TABULATED;
+    constants[121] = SHADOWS_OFF;
+    constants[122] = SHADOWS_OPAQUE;
+    constants[123] = SHADOWS_FILTERED;
+    constants[124] = SLIDE_ENTRIES;
+    constants[125] = MATERIAL_BY_SIDE;
 }
 
 void main() {

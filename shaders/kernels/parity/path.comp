@@ -6,6 +6,7 @@
 #include "kernels/parity/harness.glsl"
 #include "layout/mod.glsl"
 #include "shading/environment.glsl"
+#include "shading/interior.glsl"
 #include "shading/light.glsl"
 #include "transport/area_light.glsl"
 #include "transport/weight.glsl"
@@ -51,6 +52,8 @@ void main() {
     uint height = argument_u(4u) + 1u;
     GridPlace place;
     Surface surface;
+    Material material;
+    uint list;
     switch (function) {
     case 0u: result(0u, sample_linear(a, b, argument(2u))); break;
     case 1u: result(0u, bilinear(a, b, argument(2u), argument(3u), argument(4u), argument(5u))); break;
@@ -81,5 +84,16 @@ void main() {
         result_u(0u, consistent(surface, argument3(3u), argument3(6u), argument3(9u), argument3(12u)) ? 1u : 0u);
         break;
     case 16u: result(0u, no_light().pdf_solid_angle); result3(1u, no_light().wi); break;
+    case 17u:
+        // Few ranks, so that those asked for are often there.
+        list = argument_u(0u) & 0x03030303u;
+        result_u(0u, interior_add(list, argument_u(1u) + 1u));
+        result_u(1u, interior_remove(list, argument_u(1u) + 1u));
+        result_u(2u, interior_top(list));
+        material.model = argument_u(2u);
+        material.extra = float(argument_u(3u));
+        result_u(3u, medium_rank(material));
+        result_u(4u, cross_interface(list, material, argument_u(4u) != 0u));
+        break;
     }
 }

@@ -22,7 +22,9 @@ Light light() {
     l.cos_outer = argument(8u) * 0.5;
     l.c = vec3(0.25, 0.5, 0.125);
     l.cos_inner = argument(8u);
+    l.flaps_min = vec3(-1.0, -T_INFINITE, -2.0);
     l.exponent = argument(9u);
+    l.flaps_max = vec3(T_INFINITE, 3.0, 2.0);
     l.casts_shadow = 1u;
     return l;
 }

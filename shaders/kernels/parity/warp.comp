@@ -21,7 +21,16 @@ Camera camera() {
     c.up = argument3(6u);
     c.scale_y = 0.0078125;
     c.forward = argument3(9u);
+    c.lens_radius = 0.125;
+    c.focus_distance = 3.0;
+    c.shift_x = 0.3;
+    c.shift_y = -0.7;
     return c;
+}
+
+// A point of the lens from word 15.
+vec2 on_lens() {
+    return square_to_disk(vec2(unit_float(argument_u(15u)), unit_float(hash_u32(argument_u(15u)))));
 }
 
 void main() {
@@ -56,6 +65,11 @@ void main() {
         frame = frame_from_tangent(v, argument3(3u));
         result3(0u, frame.tangent);
         result3(3u, frame.bitangent);
+        break;
+    case 15u:
+        ray = through_lens(camera(), camera_ray(camera(), argument(12u), argument(13u)), on_lens());
+        result3(0u, ray.origin);
+        result3(3u, ray.direction);
         break;
     }
 }

@@ -120,9 +120,9 @@ impl Picture<'_> {
 }
 
 /// What every picture file says about where it came from, in this order.
-pub fn facts(film: &Film) -> [(&'static str, String); 7] {
+pub fn facts(film: &Film) -> Vec<(&'static str, String)> {
     let spec = film.spec();
-    [
+    let mut facts = vec![
         ("Software", format!("gonio {}", spec.version)),
         ("Film-Hash", film.hash().to_string()),
         ("Samples", film.samples().to_string()),
@@ -130,5 +130,9 @@ pub fn facts(film: &Film) -> [(&'static str, String); 7] {
         ("Integrator", spec.integrator.clone()),
         ("Scene", spec.scene_name.clone()),
         ("Scene-Digest", blake3::Hash::from(spec.scene_digest).to_string()),
-    ]
+    ];
+    if film.limited_count() > 0 {
+        facts.push(("Limited-Contributions", film.limited_count().to_string()));
+    }
+    facts
 }

@@ -3,12 +3,13 @@
 use super::{Bounce, Counters, Job, RenderError, Renderer, Watch};
 use crate::bake::SceneData;
 use crate::film::Film;
-use crate::layout::{AovPixel, Batch, FilmSum, INVALID, SceneView, T_INFINITE};
-use crate::trace::traverse::{trace_any, trace_closest};
+use crate::layout::{AovPixel, Batch, FilmSum, INVALID, SHADOWS_FILTERED, SceneView, T_INFINITE};
+use crate::trace::traverse::{trace_any, trace_closest, trace_occluder};
 use crate::transport::film::{add_fixed, clamp_sample};
 use crate::transport::generate::generate;
 use crate::transport::shade::shade;
-use crate::transport::{Queues, add_contribution};
+use crate::transport::shadow::shade_shadow;
+use crate::transport::{Queues, add_contribution, count_limited};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -89,8 +90,13 @@ fn run_sample(scene: &SceneView, batch: &Batch, slot: u32, worker: &mut Worker, 
         shade(scene, &path, &hit, &mut worker.queues);
         while let Some(shadow) = worker.queues.shadows.pop() {
             worker.shadow_rays += 1;
-            if !trace_any(scene, &shadow.ray) {
+            if scene.header.shadows == SHADOWS_FILTERED {
+                shade_shadow(scene, &shadow, &trace_occluder(scene, &shadow.ray), &mut worker.queues);
+            } else if !trace_any(scene, &shadow.ray) {
                 let scale = scene.header.film_scale;
+                if shadow.limited != 0 {
+                    count_limited(&mut worker.queues);
+                }
                 add_contribution(&mut worker.queues, scale, shadow.slot, shadow.contribution, shadow.dither);
             }
         }
@@ -171,10 +177,12 @@ impl Renderer for CpuRenderer<'_> {
             film.add_aovs(job.crop, &aovs, job.samples.contains(&0));
         }
         film.record(job.samples.clone(), tally.nan_count.into_inner(), tally.clamped_count.into_inner());
+        let limited = tally.limited_count.into_inner();
+        film.count_limited(limited);
         Ok(Counters {
             closest_rays: tally.closest_rays.into_inner(),
             shadow_rays: tally.shadow_rays.into_inner(),
-            limited: tally.limited_count.into_inner(),
+            limited,
             ..Counters::default()
         })
     }

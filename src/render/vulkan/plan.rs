@@ -3,7 +3,7 @@
 use super::device::{DeviceInfo, DeviceKind};
 use super::error::VulkanError;
 use crate::film::Rect;
-use crate::layout::{AovPixel, Batch, FilmSum, Hit, INTEGRATOR_PATH, PathState, SceneHeader, ShadowRay};
+use crate::layout::{AovPixel, Batch, FilmSum, Hit, PathState, SHADOWS_FILTERED, SceneHeader, ShadowRay};
 use crate::shaders::Fetch;
 use std::ops::Range;
 
@@ -24,8 +24,10 @@ pub struct QueuePlan {
     pub chunk: u32,
     /// Levels, one per scattering depth.
     pub levels: u32,
-    /// Shadow rays of a chunk at most.
+    /// Shadow rays waiting at most.
     pub shadows: u32,
+    /// Queues of shadow rays: 2 if tracing them makes some.
+    pub halves: u32,
 }
 
 impl QueuePlan {
@@ -52,11 +54,17 @@ impl QueuePlan {
     }
 
     fn of_batch(batch: u32, header: &SceneHeader, chunk: Option<u32>) -> QueuePlan {
-        // A shaded path sends one shadow ray to each light, or to one emitter; four for each slot is room for most scenes.
-        let lights = if header.integrator == INTEGRATOR_PATH { 1 } else { header.light_count.max(1) };
-        let fitting = (u64::from(batch) * 4 / u64::from(lights)).clamp(1, batch.into()) as u32;
+        // Four shadow rays for each slot is room for most scenes.
+        let rays = header.shadow_rays.max(1);
+        let fitting = (u64::from(batch) * 4 / u64::from(rays)).clamp(1, batch.into()) as u32;
         let chunk = fitting.min(chunk.unwrap_or(u32::MAX)).max(1);
-        QueuePlan { batch, chunk, levels: header.level_count, shadows: chunk.saturating_mul(lights) }
+        let plan =
+            QueuePlan { batch, chunk, levels: header.level_count, shadows: chunk.saturating_mul(rays), halves: 1 };
+        if header.shadows != SHADOWS_FILTERED {
+            return plan;
+        }
+        // Room for a chunk beside as many that go on behind panes.
+        QueuePlan { shadows: plan.shadows.saturating_mul(2), halves: 2, ..plan }
     }
 
     /// Entries of levels from 1 on: room for two branches of each ray of a full chunk.
@@ -71,7 +79,7 @@ impl QueuePlan {
             ("ray queue", level_entries * size_of::<PathState>() as u64),
             ("ray chunk", u64::from(self.chunk) * size_of::<PathState>() as u64),
             ("hits", u64::from(self.chunk) * size_of::<Hit>() as u64),
-            ("shadow ray queue", u64::from(self.shadows) * size_of::<ShadowRay>() as u64),
+            ("shadow ray queue", u64::from(self.shadows) * u64::from(self.halves) * size_of::<ShadowRay>() as u64),
             ("sample slots", u64::from(self.batch) * size_of::<FilmSum>() as u64),
         ]
     }
@@ -175,10 +183,10 @@ mod tests {
 
     #[test]
     fn many_lights_make_chunks_small_instead_of_losing_shadow_rays() {
-        let header = SceneHeader { light_count: 1000, level_count: 4, integrator: 1, ..SceneHeader::default() };
+        let header = SceneHeader { shadow_rays: 1000, level_count: 4, ..SceneHeader::default() };
         let plan = QueuePlan::of_batch(1 << 16, &header, None);
         assert_eq!((plan.chunk, plan.shadows, plan.levels), (262, 262_000, 4));
-        let plan = QueuePlan::of_batch(64, &SceneHeader { light_count: 1_000_000, ..header }, None);
+        let plan = QueuePlan::of_batch(64, &SceneHeader { shadow_rays: 1_000_000, ..header }, None);
         assert_eq!((plan.chunk, plan.shadows), (1, 1_000_000));
     }
 }

@@ -9,7 +9,8 @@ use super::record::Recorder;
 use super::scene::SceneBuffers;
 use crate::bake::SceneData;
 use crate::layout::{
-    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, KIND_SPHERE,
+    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, KIND_SPHERE, Light,
+    T_INFINITE,
 };
 use crate::shaders;
 use glam::Vec3;
@@ -56,10 +57,13 @@ pub fn specialisation(scene: &SceneBuffers, data: &SceneData) -> Vec<(u32, u32)>
 }
 
 /// Those that say what the scene uses.
-fn scene_constants(data: &SceneData) -> [(u32, u32); 16] {
+fn scene_constants(data: &SceneData) -> [(u32, u32); 24] {
     let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
     let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
     let textures = data.materials.iter().any(|material| material.texture_count > 0);
+    let open =
+        |light: &Light| light.flaps_min.max_element() <= -T_INFINITE && light.flaps_max.min_element() >= T_INFINITE;
+    let flaps = !data.lights.iter().all(open);
     let models = data.materials.iter().fold(0, |mask, material| mask | 1 << material.model);
     [
         (5, data.stack_depth.max(1)),
@@ -72,13 +76,20 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 16] {
         (12, data.emitters.iter().fold(0, |mask, emitter| mask | 1 << emitter.kind)),
         (13, u32::from(data.emitters.iter().any(|emitter| emitter.flags & EMITTER_TEXTURED != 0))),
         (14, data.header.environment_maps),
-        // Textures may cut holes.
-        (15, u32::from(!data.textures.is_empty() || data.materials.iter().any(|material| material.k_t > 0.0))),
+        (15, u32::from(data.has_panes())),
         (16, u32::from(data.materials.iter().any(|material| material.absorption != Vec3::ZERO))),
         (17, u32::from(facets)),
         (18, u32::from(textures)),
         (19, u32::from(data.instances.len() == 1)),
         (20, data.textures.iter().fold(0, |mask, texture| mask | 1 << texture.format)),
+        (21, u32::from(data.header.camera.lens_radius > 0.0)),
+        (22, u32::from(flaps)),
+        (23, data.header.shadows),
+        (24, data.header.nested),
+        (25, u32::from(data.lights.iter().any(|light| light.slide != 0))),
+        (26, data.header.shadowless),
+        (27, data.header.hide_emitters),
+        (28, u32::from(data.header.clamp > 0.0)),
     ]
 }
 

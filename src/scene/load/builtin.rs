@@ -2,10 +2,10 @@
 
 use super::staging::bare_scene;
 use crate::scene::{
-    Attenuation, Background, Camera, Geometry, IntensityUnit, Light, LightKind, Location, Material, MaterialId, Mesh,
-    MeshId, Model, Object, Projection, Rgb, Scene, SceneError, Transform, shape,
+    Attenuation, Background, Camera, Flaps, Geometry, IntensityUnit, Light, LightKind, Location, Material, MaterialId,
+    Mesh, MeshId, Model, Object, Projection, Rgb, Scene, SceneError, Transform, shape,
 };
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 use std::path::Path;
 
@@ -181,7 +181,15 @@ fn teapots(scene: &mut Scene, triangles: u64) {
 
 fn look(scene: &mut Scene, eye: [f32; 3], target: [f32; 3], fov_y_degrees: f32) {
     let projection = Projection::Perspective { fov_y: fov_y_degrees.to_radians() };
-    scene.camera = Camera { eye: Vec3::from(eye), target: Vec3::from(target), up: Vec3::Y, projection };
+    scene.camera = Camera {
+        eye: Vec3::from(eye),
+        target: Vec3::from(target),
+        up: Vec3::Y,
+        projection,
+        lens: None,
+        shift: Vec2::ZERO,
+        mirrored: false,
+    };
 }
 
 fn add_material(scene: &mut Scene, material: Material) -> MaterialId {
@@ -221,7 +229,9 @@ fn add_light(scene: &mut Scene, kind: LightKind, shown: f32) {
         intensity: Rgb::splat(shown * PI),
         unit: IntensityUnit::Radiometric,
         attenuation: Attenuation::None,
+        flaps: Flaps::NONE,
         casts_shadow: true,
+        slide: None,
     });
 }
 

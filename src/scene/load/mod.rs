@@ -2,8 +2,10 @@
 
 mod bounds;
 pub mod builtin;
+mod directional;
 pub mod gltf;
 pub mod image;
+pub mod measured;
 mod merl;
 mod meter;
 pub mod mitsuba;

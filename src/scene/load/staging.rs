@@ -6,16 +6,24 @@
 
 use super::bounds::{Bounds, Room, free_distance};
 use crate::scene::{
-    Attenuation, Background, Camera, Film, Filter, Geometry, Integrator, IntensityUnit, Light, LightKind, Material,
-    MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, Shading, ToneMap, Transform, shape,
+    Attenuation, Background, Camera, Film, Filter, Flaps, Geometry, Integrator, IntensityUnit, Light, LightKind,
+    Material, MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, Shading, Shadows, ToneMap,
+    Transform, shape,
 };
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::PI;
 use std::path::Path;
 
 /// Stands for "no camera given": `eye` and `target` of a real camera differ.
-const NO_CAMERA: Camera =
-    Camera { eye: Vec3::ZERO, target: Vec3::ZERO, up: Vec3::Y, projection: Projection::Perspective { fov_y: FOV_Y } };
+const NO_CAMERA: Camera = Camera {
+    eye: Vec3::ZERO,
+    target: Vec3::ZERO,
+    up: Vec3::Y,
+    projection: Projection::Perspective { fov_y: FOV_Y },
+    lens: None,
+    shift: Vec2::ZERO,
+    mirrored: false,
+};
 
 /// 30 degrees: little perspective, as in a photograph of a product.
 const FOV_Y: f32 = std::f32::consts::FRAC_PI_6;
@@ -35,6 +43,7 @@ pub fn bare_scene(path: &Path) -> Scene {
         film: Film {
             width: 1280,
             height: 720,
+            crop: None,
             // No negative lobes: sampled ones would be noise at few samples a pixel.
             filter: Filter::Gaussian { radius: 1.5, sigma: 0.5 },
             unit_exponent: 0,
@@ -51,7 +60,8 @@ pub fn bare_scene(path: &Path) -> Scene {
             min_weight: 0.003,
             rr_depth: 5,
             clamp: None,
-            shadows: true,
+            hide_emitters: false,
+            shadows: Shadows::Opaque,
             shading: Shading::Phong,
         },
         camera: NO_CAMERA,
@@ -140,7 +150,15 @@ fn frame(back: DVec3) -> (DVec3, DVec3) {
 }
 
 fn camera(eye: DVec3, target: DVec3, fov_y: f32) -> Camera {
-    Camera { eye: eye.as_vec3(), target: target.as_vec3(), up: Vec3::Y, projection: Projection::Perspective { fov_y } }
+    Camera {
+        eye: eye.as_vec3(),
+        target: target.as_vec3(),
+        up: Vec3::Y,
+        projection: Projection::Perspective { fov_y },
+        lens: None,
+        shift: Vec2::ZERO,
+        mirrored: false,
+    }
 }
 
 /// From where the view across the room's middle is longest, or, if a side is missing, through it from outside.
@@ -170,7 +188,9 @@ fn light(name: &str, kind: LightKind, irradiance: f32, attenuation: Attenuation,
         intensity: Rgb::splat(irradiance),
         unit: IntensityUnit::Radiometric,
         attenuation,
+        flaps: Flaps::NONE,
         casts_shadow,
+        slide: None,
     }
 }
 

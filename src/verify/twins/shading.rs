@@ -1,7 +1,7 @@
 //! Twins of Fresnel terms, microfacets, dielectrics and lights, in the order of `shaders/kernels/parity/shading.comp`.
 
 use super::{Family, In, Twin};
-use crate::layout::Light;
+use crate::layout::{Light, T_INFINITE};
 use crate::shading::dielectric::{refract_local, transmittance};
 use crate::shading::frame::{frame_from_normal, to_local, to_world};
 use crate::shading::fresnel::{fresnel_conductor, fresnel_conductor3, fresnel_dielectric};
@@ -26,7 +26,9 @@ fn light(i: &In) -> Light {
         cos_outer: i.f(8) * 0.5,
         c: Vec3::new(0.25, 0.5, 0.125),
         cos_inner: i.f(8),
+        flaps_min: Vec3::new(-1.0, -T_INFINITE, -2.0),
         exponent: i.f(9),
+        flaps_max: Vec3::new(T_INFINITE, 3.0, 2.0),
         casts_shadow: 1,
         ..Light::default()
     }

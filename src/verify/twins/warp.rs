@@ -3,11 +3,11 @@
 
 use super::{Family, In, Twin};
 use crate::layout::Camera;
-use crate::shading::camera::camera_ray;
+use crate::shading::camera::{camera_ray, through_lens};
 use crate::shading::coordinate::{finite_or_zero, wrap_coordinate, wrap_texel};
 use crate::shading::filter::sample_tent;
 use crate::shading::frame::frame_from_tangent;
-use crate::shading::sampling::unit_float;
+use crate::shading::sampling::{hash_u32, unit_float};
 use crate::shading::warp::{
     cosine_hemisphere_pdf, cosine_hemisphere_to_square, disk_to_square, square_to_cosine_hemisphere, square_to_disk,
     square_to_uniform_hemisphere, square_to_uniform_sphere, square_to_uniform_triangle, uniform_hemisphere_pdf,
@@ -18,12 +18,12 @@ use glam::Vec2;
 
 /// The bits of two sample points, as the samplers make them.
 const POINT: [Domain; 2] = [Below(0), Below(0)];
-/// Eye, right, up, forward, film point, kind.
-const CAMERA: [Domain; 13] = {
+/// Eye, right, up, forward, film point, kind, point of the lens.
+const CAMERA: [Domain; 14] = {
     let side = Exponent(-6, 4);
     let eye = Exponent(-20, 20);
     let film = Range(-64.0, 1024.0);
-    [eye, eye, eye, side, side, side, side, side, side, Direction, film, film, Below(2)]
+    [eye, eye, eye, side, side, side, side, side, side, Direction, film, film, Below(2), Below(0)]
 };
 
 fn point(i: &In) -> Vec2 {
@@ -40,8 +40,17 @@ fn camera(i: &In) -> Camera {
         up: i.v3(6),
         scale_y: 0.0078125,
         forward: i.v3(9),
+        lens_radius: 0.125,
+        focus_distance: 3.0,
+        shift_x: 0.3,
+        shift_y: -0.7,
         ..Camera::default()
     }
+}
+
+/// A point of the lens from word 15.
+fn on_lens(i: &In) -> Vec2 {
+    square_to_disk(Vec2::new(unit_float(i.u(15)), unit_float(hash_u32(i.u(15)))))
 }
 
 pub const FAMILY: Family = Family {
@@ -154,6 +163,14 @@ pub const FAMILY: Family = Family {
             run: |i, o| {
                 let frame = frame_from_tangent(i.v3(0), i.v3(3));
                 o.v3(frame.tangent).v3(frame.bitangent);
+            },
+        },
+        Twin {
+            name: "through_lens",
+            domains: &CAMERA,
+            run: |i, o| {
+                let ray = through_lens(&camera(i), camera_ray(&camera(i), i.f(12), i.f(13)), on_lens(i));
+                o.v3(ray.origin).v3(ray.direction);
             },
         },
     ],

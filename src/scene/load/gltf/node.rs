@@ -3,9 +3,9 @@
 use super::accessor::Accessors;
 use super::{Failure, Loader, Part};
 use crate::scene::{
-    Attenuation, Camera, Geometry, IntensityUnit, Light, LightKind, Object, Projection, Rgb, Transform,
+    Attenuation, Camera, Flaps, Geometry, IntensityUnit, Light, LightKind, Object, Projection, Rgb, Transform,
 };
-use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec3};
 use gltf::json::camera::Type as CameraType;
 use gltf::json::extensions::scene::khr_lights_punctual::Type as LightType;
 use gltf::json::validation::Checked;
@@ -255,6 +255,9 @@ impl Loader<'_> {
             target: (eye + forward / forward.length() * reach).as_vec3(),
             up: (up / up.length()).as_vec3(),
             projection,
+            lens: None,
+            shift: Vec2::ZERO,
+            mirrored: false,
         };
         self.has_camera = true;
         Ok(())
@@ -297,7 +300,9 @@ impl Loader<'_> {
             intensity: Rgb::from_array(light.color.map(channel)),
             unit: IntensityUnit::Radiometric,
             attenuation,
+            flaps: Flaps::NONE,
             casts_shadow: true,
+            slide: None,
         });
         Ok(())
     }

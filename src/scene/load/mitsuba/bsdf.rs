@@ -69,11 +69,11 @@ impl Loader<'_> {
             "diffuse" => self.color(&object, &mut material, "reflectance", 0.5)?,
             "dielectric" => {
                 material.model = Model::Dielectric { eta: relative_index(&object, "bk7")?, absorption: Rgb::ZERO };
-                self.white_only(&object, &["specular_reflectance", "specular_transmittance"])?;
+                self.glass(&object, &mut material)?;
             }
             "thindielectric" => {
                 material.model = Model::ThinDielectric { eta: relative_index(&object, "bk7")? };
-                self.white_only(&object, &["specular_reflectance", "specular_transmittance"])?;
+                self.glass(&object, &mut material)?;
             }
             "roughdielectric" => {
                 let (alpha_u, alpha_v) = self.alpha(&object, &mut material)?;
@@ -84,7 +84,7 @@ impl Loader<'_> {
                     eta: relative_index(&object, "bk7")?,
                     absorption: Rgb::ZERO,
                 };
-                self.white_only(&object, &["specular_reflectance", "specular_transmittance"])?;
+                self.glass(&object, &mut material)?;
             }
             "conductor" => {
                 material.model = Model::Conductor { fresnel: metal(&object)? };
@@ -120,6 +120,11 @@ impl Loader<'_> {
             }
             "principled" => self.principled(&object, &mut material)?,
             "null" => material.model = Model::Null,
+            "twosided" if object.nested("bsdf").len() == 2 => {
+                let children = first(2)?;
+                let front = self.nested_material(children[0], true, nesting + 1)?;
+                material.model = Model::Sides { front, back: self.nested_material(children[1], true, nesting + 1)? };
+            }
             "twosided" => {
                 return self
                     .build(first(1)?[0], true, nesting + 1)
@@ -163,8 +168,7 @@ impl Loader<'_> {
     fn principled(&mut self, object: &Object, material: &mut Material) -> Result<()> {
         self.color(object, material, "base_color", 0.5)?;
         object.exclusive("eta", "specular")?;
-        let unit = |name: &str, default: f64| Ok(object.float_in(name, 0.0, 1.0)?.unwrap_or(default) as f32);
-        let specular = f64::from(unit("specular", 0.5)?);
+        let specular = f64::from(self.constant(object, "specular", 0.5)?);
         let eta = match object.has("eta") {
             true => object.index("eta", "bk7")? as f32,
             // Mitsuba's and Burley's "specular": the reflectance at normal incidence is 0.08 of it.
@@ -172,18 +176,33 @@ impl Loader<'_> {
         };
         material.model = Model::Principled(Principled {
             roughness: self.scalar(object, material, "roughness", 0.5, Parameter::Roughness)?,
-            anisotropic: unit("anisotropic", 0.0)?,
+            anisotropic: self.constant(object, "anisotropic", 0.0)?,
             metallic: self.scalar(object, material, "metallic", 0.0, Parameter::Metallic)?,
-            spec_trans: unit("spec_trans", 0.0)?,
+            spec_trans: self.constant(object, "spec_trans", 0.0)?,
             eta,
-            spec_tint: unit("spec_tint", 0.0)?,
-            sheen: unit("sheen", 0.0)?,
-            sheen_tint: unit("sheen_tint", 0.0)?,
-            flatness: unit("flatness", 0.0)?,
-            clearcoat: unit("clearcoat", 0.0)?,
-            clearcoat_gloss: unit("clearcoat_gloss", 0.0)?,
+            spec_tint: self.constant(object, "spec_tint", 0.0)?,
+            sheen: self.constant(object, "sheen", 0.0)?,
+            sheen_tint: self.constant(object, "sheen_tint", 0.0)?,
+            flatness: self.constant(object, "flatness", 0.0)?,
+            clearcoat: self.constant(object, "clearcoat", 0.0)?,
+            clearcoat_gloss: self.constant(object, "clearcoat_gloss", 0.0)?,
         });
         Ok(())
+    }
+
+    /// A number within 0 and 1 that is the same all over a surface; of a texture its mean, with a warning.
+    fn constant(&mut self, object: &Object, name: &str, default: f64) -> Result<f32> {
+        let Some(node) = object.property(name).filter(|node| self.document.tag(*node) == "texture") else {
+            return Ok(object.float_in(name, 0.0, 1.0)?.unwrap_or(default) as f32);
+        };
+        let texture = self.texture(node)?;
+        let mean = self.textures.mean(texture, &self.scene).clamp(0.0, 1.0);
+        let location = self.document.location_of(node);
+        let plugin = object.plugin.name;
+        let message =
+            format!("{location}: {name:?} of the bsdf {plugin:?} is the same all over here: {mean:.3}, its mean");
+        self.scene.warnings.push(message);
+        Ok(mean as f32)
     }
 
     /// The base colour: a constant or a texture.
@@ -192,19 +211,36 @@ impl Loader<'_> {
             material.color = Rgb::splat(default);
             return Ok(());
         };
-        if self.document.tag(node) != "texture" {
-            material.color = super::color::color(self.document, node, Role::Reflectance)?;
+        if self.document.tag(node) == "texture"
+            && let Varying::VertexColor(scale) = self.textures.read(self.document, node, &mut self.scene)?
+        {
+            // Vertex colours multiply the colour of every material.
+            material.color = Rgb::splat(scale);
             return Ok(());
         }
-        match self.textures.read(self.document, node, &mut self.scene)? {
-            Varying::Texture(texture) => material.textures.push(TextureBinding::color(texture)),
-            // Vertex colours multiply the colour of every material.
-            Varying::VertexColor(scale) => material.color = Rgb::splat(scale),
-        }
+        material.color = self.factor(object, material, name, default, Parameter::Color)?;
         Ok(())
     }
 
-    fn texture(&mut self, node: Node) -> Result<TextureId> {
+    /// A colour, or white with a texture that multiplies `parameter`.
+    fn factor(
+        &mut self,
+        object: &Object,
+        material: &mut Material,
+        name: &str,
+        default: f32,
+        parameter: Parameter,
+    ) -> Result<Rgb> {
+        let Some(node) = object.property(name) else { return Ok(Rgb::splat(default)) };
+        if self.document.tag(node) != "texture" {
+            return super::color::color(self.document, node, Role::Reflectance);
+        }
+        let texture = self.texture(node)?;
+        material.textures.push(TextureBinding { parameter, texture, channel: Channel::Rgb, scale: 1.0 });
+        Ok(Rgb::ONE)
+    }
+
+    pub fn texture(&mut self, node: Node) -> Result<TextureId> {
         match self.textures.read(self.document, node, &mut self.scene)? {
             Varying::Texture(texture) => Ok(texture),
             _ => Err(self.document.bad(node, "vertex colours can only be a colour")),
@@ -251,19 +287,16 @@ impl Loader<'_> {
     }
 
     fn specular(&mut self, object: &Object, material: &mut Material) -> Result<()> {
-        material.specular_color = object.color("specular_reflectance", Role::Reflectance)?.unwrap_or(Rgb::ONE);
+        let parameter = Parameter::SpecularColor;
+        material.specular_color = self.factor(object, material, "specular_reflectance", 1.0, parameter)?;
         Ok(())
     }
 
-    /// Says that factors on an interface without losses are left out.
-    fn white_only(&mut self, object: &Object, names: &[&str]) -> Result<()> {
-        for name in names {
-            if object.color(name, Role::Reflectance)?.is_some_and(|color| color != Rgb::ONE) {
-                let location = self.document.location_of(object.node);
-                let message = format!("{location}: {name:?} of the bsdf {:?} is taken as 1", object.plugin.name);
-                self.scene.warnings.push(message);
-            }
-        }
+    /// The factors on what an interface of glass reflects and lets through.
+    fn glass(&mut self, object: &Object, material: &mut Material) -> Result<()> {
+        material.color = self.factor(object, material, "specular_reflectance", 1.0, Parameter::Color)?;
+        let parameter = Parameter::SpecularColor;
+        material.specular_color = self.factor(object, material, "specular_transmittance", 1.0, parameter)?;
         Ok(())
     }
 }

@@ -76,6 +76,35 @@ fn spectrum(document: &Document, node: Node, role: Role) -> Result<Rgb> {
     finish(document, node, "value", points, role)
 }
 
+/// The numbers of a property that is a text.
+fn list(object: &Object, name: &str) -> Result<Vec<f64>> {
+    let text = object.required(name, object.text(name)?)?;
+    let number = |word: &str| {
+        parse(word).ok_or_else(|| object.bad(name, format!("{name:?} is a list of numbers, found {word:?}")))
+    };
+    words(text).map(number).collect()
+}
+
+/// Wavelengths from `wavelength_min` to `wavelength_max`, `count` (2 or more) of them, evenly spaced.
+fn even_wavelengths(object: &Object, count: usize, defaults: [Option<f64>; 2]) -> Result<Vec<f64>> {
+    let end = |name: &str, default: Option<f64>| {
+        object.float_in(name, 1.0, 1e6)?.or(default).map_or_else(|| object.required(name, None), Ok)
+    };
+    let (low, high) = (end("wavelength_min", defaults[0])?, end("wavelength_max", defaults[1])?);
+    Ok((0..count).map(|i| low + (high - low) * i as f64 / (count.max(2) - 1) as f64).collect())
+}
+
+/// Spectral radiance of a black body in W / (m^2 sr nm): Planck's law. `wavelength`: nm. `temperature`: K.
+fn planck(wavelength: f64, temperature: f64) -> f64 {
+    // CODATA 2018; exact.
+    const C: f64 = 299_792_458.0;
+    const H: f64 = 6.626_070_15e-34;
+    const K: f64 = 1.380_649e-23;
+    let metres = wavelength * 1e-9;
+    let growth = libm::expm1(H * C / (metres * K * temperature));
+    1e-9 * 2.0 * H * C * C / (metres * metres * metres * metres * metres * growth)
+}
+
 fn spectrum_file(document: &Document, node: Node, role: Role) -> Result<Rgb> {
     let path = document.find_file(node, "filename")?;
     let text = crate::scene::load::text::utf8(&path, crate::scene::load::text::read_bytes(&path)?)?;
@@ -113,6 +142,25 @@ fn plugin(document: &Document, node: Node, role: Role) -> Result<Rgb> {
     let object = Object::open(document, node)?;
     match object.plugin.name {
         "uniform" => Ok(Rgb::splat(object.float("value")?.unwrap_or(1.0) as f32)),
+        "regular" => {
+            let values = list(&object, "values")?;
+            let wavelengths = even_wavelengths(&object, values.len(), [None; 2])?;
+            finish(document, node, "value", wavelengths.into_iter().zip(values).collect(), role)
+        }
+        "irregular" => {
+            let (wavelengths, values) = (list(&object, "wavelengths")?, list(&object, "values")?);
+            if wavelengths.len() != values.len() {
+                let message = format!("{} wavelengths have {} values", wavelengths.len(), values.len());
+                return Err(object.bad("values", message));
+            }
+            finish(document, node, "value", wavelengths.into_iter().zip(values).collect(), role)
+        }
+        "blackbody" => {
+            let kelvin = object.required("temperature", object.float_in("temperature", 1.0, 1e7)?)?;
+            // A nanometre apart: Planck's curve has no edges.
+            let wavelengths = even_wavelengths(&object, 471, [Some(360.0), Some(830.0)])?;
+            finish(document, node, "value", wavelengths.iter().map(|w| (*w, planck(*w, kelvin))).collect(), role)
+        }
         "d65" => {
             let scale = object.float("scale")?.unwrap_or(1.0) as f32;
             let color = object.property("color").map(|node| color(document, node, role)).transpose()?;

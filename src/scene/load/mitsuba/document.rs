@@ -1,6 +1,7 @@
 //! Mitsuba's XML as a tree of elements: includes read, `<default>`s filled in, ids and paths known, every element with its
 //! place. What elements mean is not known here.
 
+use super::upgrade;
 use crate::scene::load::text::{read_bytes, utf8};
 use crate::scene::load::toml::nearest;
 use crate::scene::{Location, SceneError};
@@ -68,6 +69,8 @@ struct Loader {
     /// Parameters that the scene names, for messages and to find misspelt ones.
     named: BTreeSet<String>,
     bytes: usize,
+    /// The file being read is of a version before 2.
+    old: bool,
 }
 
 impl Document {
@@ -83,7 +86,7 @@ impl Document {
         let document =
             Self { files: Vec::new(), elements: vec![root], ids: HashMap::new(), folders: vec![folder], root: Node(0) };
         let parameters = defines.iter().cloned().collect();
-        let mut loader = Loader { document, parameters, named: BTreeSet::new(), bytes: 0 };
+        let mut loader = Loader { document, parameters, named: BTreeSet::new(), bytes: 0, old: false };
         loader.read_file(path, Node(0), 0)?;
         for (name, _) in defines {
             if !loader.named.contains(name) {
@@ -230,18 +233,15 @@ impl Loader {
         if depth == 0 {
             self.document.elements[0].place = place;
         }
+        let before = self.old;
         match root.attribute("version") {
-            Some(version)
-                if version
-                    .split('.')
-                    .next()
-                    .and_then(|major| major.parse::<u32>().ok())
-                    .is_some_and(|major| major >= 2) => {}
-            Some(version) => {
-                let message =
-                    format!("a scene of version {version:?}; gonio reads Mitsuba 2 and 3 (version=\"3.0.0\")");
-                return Err(self.document_error(&source, root, message));
-            }
+            Some(version) => match version.split('.').next().and_then(|major| major.parse::<u32>().ok()) {
+                Some(major) => self.old = major < 2,
+                None => {
+                    let message = format!("a scene has a version such as \"3.0.0\", found {version:?}");
+                    return Err(self.document_error(&source, root, message));
+                }
+            },
             None if depth > 0 => {}
             None => {
                 return Err(self.document_error(
@@ -254,6 +254,7 @@ impl Loader {
         for child in root.children() {
             self.read_element(&source, child, parent, depth, 1)?;
         }
+        self.old = before;
         Ok(())
     }
 
@@ -289,11 +290,15 @@ impl Loader {
         let mut attributes = Vec::new();
         for attribute in xml.attributes() {
             let place = source.place(attribute.range_value().start);
-            let value = self.substitute(attribute.value(), place)?;
+            let mut value = self.substitute(attribute.value(), place)?;
+            if self.old && attribute.name() == "name" && xml.tag_name().name() != "default" {
+                value = upgrade::name(&value, self.document.attribute(parent, "type"));
+            }
             attributes.push(Attribute { name: attribute.name().to_owned(), value, place });
         }
         let node = Node(self.document.elements.len() as u32);
-        let tag = xml.tag_name().name().to_owned();
+        let written = xml.tag_name().name();
+        let tag = if self.old { upgrade::tag(written) } else { written }.to_owned();
         self.document.elements.push(Element { tag: tag.clone(), attributes, children: Vec::new(), place });
         match tag.as_str() {
             "default" => return self.read_default(node),
@@ -310,8 +315,44 @@ impl Loader {
         for child in xml.children() {
             self.read_element(source, child, node, depth, nesting + 1)?;
         }
+        if self.old {
+            self.upgrade_children(node);
+            if upgrade::is_gone(&tag, self.document.attribute(node, "name")) {
+                return Ok(());
+            }
+        }
         self.document.elements[parent.0 as usize].children.push(node);
         Ok(())
+    }
+
+    /// Makes a transform of the places that textures of old scenes say number by number.
+    fn upgrade_children(&mut self, node: Node) {
+        let is_place = |document: &Document, child: Node, name: &str| {
+            document.tag(child) == "float" && document.attribute(child, "name") == Some(name)
+        };
+        let children = self.document.children(node).to_vec();
+        let value = |name: &str| {
+            let child = children.iter().find(|child| is_place(&self.document, **child, name))?;
+            self.document.attribute(*child, "value").map(str::to_owned)
+        };
+        let steps = upgrade::steps(value);
+        if steps.is_empty() {
+            return;
+        }
+        let place = self.document.element(node).place;
+        let attribute = |name: &str, value: String| Attribute { name: name.to_owned(), value, place };
+        let mut add = |tag: &str, attributes: Vec<Attribute>, children: Vec<Node>| {
+            self.document.elements.push(Element { tag: tag.to_owned(), attributes, children, place });
+            Node(self.document.elements.len() as u32 - 1)
+        };
+        let steps =
+            steps.into_iter().map(|(tag, [x, y])| add(tag, vec![attribute("x", x), attribute("y", y)], Vec::new()));
+        let steps = steps.collect();
+        let transform = add("transform", vec![attribute("name", "to_uv".to_owned())], steps);
+        let mut kept = children;
+        kept.retain(|child| !upgrade::PLACES.iter().any(|name| is_place(&self.document, *child, name)));
+        kept.push(transform);
+        self.document.elements[node.0 as usize].children = kept;
     }
 
     /// `value` with each `$name` or `${name}` replaced.

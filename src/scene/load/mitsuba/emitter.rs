@@ -6,18 +6,43 @@ use super::object::{Child, Object};
 use super::spectrum::Role;
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::intern;
-use crate::scene::{Attenuation, Background, Environment, IntensityUnit, Light, LightKind, Rgb, Wrap};
-use glam::{DVec3, Vec3};
+use crate::scene::{
+    Attenuation, Background, Channel, Environment, Flaps, IntensityUnit, Light, LightKind, Material, Parameter, Rgb, Slide,
+    Texture, TextureBinding, Wrap,
+};
+use glam::{DAffine3, DVec3, Vec3};
+use std::f64::consts::PI;
+
+/// A slide in the beam along the z axis of `place`, without a picture: its axes are x and y, times these.
+fn slide(place: &DAffine3, right: f64, up: f64) -> Slide {
+    // Directions come in unit length, whatever the transform scales by.
+    let axis = |v: DVec3, factor: f64| {
+        let length = libm::sqrt(v.dot(v));
+        if length > 0.0 { (v * (factor / length)).as_vec3() } else { Vec3::ZERO }
+    };
+    let (right, up) = (axis(place.matrix3.x_axis, right), axis(place.matrix3.y_axis, up));
+    Slide { texture: None, right, up, ramp: None, projector: false }
+}
 
 impl Loader<'_> {
-    /// The radiance of a shape's emitter.
-    pub fn area_radiance(&self, emitter: Child) -> Result<Rgb> {
+    /// Lets `material` glow as a shape's emitter says.
+    pub fn glow(&mut self, emitter: Child, material: &mut Material) -> Result<()> {
         let object = Object::open(self.document, emitter.node)?;
         if object.plugin.name != "area" {
             let message = format!("a shape has an emitter of type \"area\", found {:?}", object.plugin.name);
             return Err(self.document.bad(emitter.written, message));
         }
-        Ok(object.color("radiance", Role::Emission)?.unwrap_or(Rgb::ONE))
+        material.emission_two_sided = false;
+        material.emission = Rgb::ONE;
+        match object.property("radiance") {
+            Some(node) if self.document.tag(node) == "texture" => {
+                let (texture, parameter) = (self.texture(node)?, Parameter::Emission);
+                material.textures.push(TextureBinding { parameter, texture, channel: Channel::Rgb, scale: 1.0 });
+            }
+            Some(node) => material.emission = super::color::color(self.document, node, Role::Emission)?,
+            None => {}
+        }
+        Ok(())
     }
 
     /// Adds an emitter that stands in the scene itself.
@@ -65,14 +90,37 @@ impl Loader<'_> {
                 if inner > outer {
                     return Err(object.bad("beam_width", "\"beam_width\" is at most \"cutoff_angle\""));
                 }
-                let kind = LightKind::Spot {
-                    position: place.translation.as_vec3(),
-                    direction: self.unit(&object, "to_world", place.matrix3.z_axis)?,
-                    inner: inner.to_radians() as f32,
-                    outer: outer.to_radians() as f32,
-                    exponent: 0.0,
+                let texture = match object.property("texture") {
+                    Some(node) if self.document.tag(node) == "texture" => Some(self.texture(node)?),
+                    Some(_) => return Err(object.bad("texture", "the \"texture\" of a spot is a <texture>")),
+                    None => None,
                 };
-                self.add_light(&object, kind, "intensity", Attenuation::InverseSquare)
+                let ramp = Some([inner, outer].map(|angle| angle.to_radians() as f32));
+                // Seen along the light's way, the picture of a spot is the right way round with x to the right.
+                let half = 0.5 / libm::tan(outer.to_radians());
+                let slide = Slide { texture, ramp, ..slide(&place, half, -half) };
+                let intensity = object.color("intensity", Role::Emission)?.unwrap_or(Rgb::ONE);
+                self.add_spot(&object, place, outer.to_radians(), intensity, slide)
+            }
+            "projector" => {
+                let place = object.transform("to_world")?.0;
+                let Some(picture) = object.property("irradiance") else { return object.required("irradiance", None) };
+                let texture = match self.document.tag(picture) {
+                    "texture" => self.texture(picture)?,
+                    _ => {
+                        let color = super::color::color(self.document, picture, Role::Emission)?;
+                        intern(&mut self.scene.textures, super::texture::uniform(color))
+                    }
+                };
+                let Texture { width, height, .. } = self.scene.textures[texture.0 as usize];
+                let aspect = f64::from(width) / f64::from(height);
+                let tangent_y = libm::tan(super::sensor::read_fov(&object, aspect)? / 2.0);
+                let tangent_x = tangent_y * aspect;
+                let intensity = Rgb::splat((PI * object.float_in("scale", 0.0, 1e12)?.unwrap_or(1.0)) as f32);
+                // The camera's own axes: x to the left, y up.
+                let around = slide(&place, -0.5 / tangent_x, 0.5 / tangent_y);
+                let slide = Slide { texture: Some(texture), projector: true, ..around };
+                self.add_spot(&object, place, libm::atan(libm::hypot(tangent_x, tangent_y)), intensity, slide)
             }
             // directional
             _ => {
@@ -97,12 +145,37 @@ impl Loader<'_> {
         }
     }
 
+    /// A light at the origin of `place` that shines along its z axis into a cone of half angle `outer`.
+    fn add_spot(&mut self, object: &Object, place: DAffine3, outer: f64, intensity: Rgb, slide: Slide) -> Result<()> {
+        let kind = LightKind::Spot {
+            position: place.translation.as_vec3(),
+            direction: self.unit(object, "to_world", place.matrix3.z_axis)?,
+            inner: outer as f32,
+            outer: outer as f32,
+            exponent: 0.0,
+        };
+        self.push_light(object, kind, intensity, Attenuation::InverseSquare, Some(slide));
+        Ok(())
+    }
+
     fn add_light(&mut self, object: &Object, kind: LightKind, strength: &str, attenuation: Attenuation) -> Result<()> {
         let intensity = object.color(strength, Role::Emission)?.unwrap_or(Rgb::ONE);
+        self.push_light(object, kind, intensity, attenuation, None);
+        Ok(())
+    }
+
+    fn push_light(
+        &mut self,
+        object: &Object,
+        kind: LightKind,
+        intensity: Rgb,
+        attenuation: Attenuation,
+        slide: Option<Slide>,
+    ) {
         let name = self.document.attribute(object.node, "id").unwrap_or(object.plugin.name).to_owned();
         let unit = IntensityUnit::Radiometric;
-        self.scene.lights.push(Light { name, kind, intensity, unit, attenuation, casts_shadow: true });
-        Ok(())
+        let flaps = Flaps::NONE;
+        self.scene.lights.push(Light { name, kind, intensity, unit, attenuation, flaps, casts_shadow: true, slide });
     }
 
     /// There is one environment.

@@ -45,12 +45,7 @@ fn read(document: &Document, node: Node, scene: &mut Scene, nesting: u32) -> Res
             {
                 scene.settings.rr_depth = rr_depth.min(i64::from(DEPTH_MAX) + 1) as u32;
             }
-            if object.boolean("hide_emitters")? == Some(true) {
-                let location = document.location_of(node);
-                scene.warnings.push(format!(
-                    "{location}: \"hide_emitters\" has no effect; --transparent leaves the background out"
-                ));
-            }
+            scene.settings.hide_emitters = object.boolean("hide_emitters")?.unwrap_or(false);
             Ok(())
         }
     }

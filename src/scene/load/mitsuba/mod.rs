@@ -17,9 +17,10 @@ mod shape;
 mod spectrum;
 mod texture;
 mod transform;
+mod upgrade;
 
 use super::staging::{bare_scene, lacks_camera};
-use crate::scene::{MaterialId, MeshId, Rgb, Scene, SceneError};
+use crate::scene::{MaterialId, MeshId, Rgb, Scene, SceneError, Shadows};
 use document::{Document, Node, hint};
 use object::CLASSES;
 use std::collections::HashMap;
@@ -42,6 +43,8 @@ struct MeshKey {
     turned: bool,
     /// Its vertex colours are shown.
     colored: bool,
+    /// Placed by a transform that mirrors it.
+    mirrored: bool,
 }
 
 /// A scene on its way.
@@ -110,6 +113,8 @@ impl Loader<'_> {
 
     fn finish(self) -> Result<Scene, SceneError> {
         let mut scene = self.scene;
+        // Masks have holes: their shadows too.
+        scene.settings.shadows = Shadows::Filtered;
         let glows = scene.materials.iter().any(|material| material.emission != Rgb::ZERO);
         if scene.lights.is_empty() && !glows && !scene.background.shines() {
             scene.warnings.push(format!("{}: the scene has no light: the picture will be black", scene.name));

@@ -103,7 +103,11 @@ const fn plugin(
 use Kind::{Boolean, Color, Float, Index, Integer, Scalar, Text, Texture, Transform, Vector};
 
 const TO_WORLD: &[Property] = &[p("to_world", Transform, "identity")];
-const SHAPE: &[Property] = &[p("to_world", Transform, "identity"), p("flip_normals", Boolean, "false")];
+const SHAPE: &[Property] = &[
+    p("to_world", Transform, "identity"),
+    p("flip_normals", Boolean, "false"),
+    ignored("silhouette_sampling_weight", Float),
+];
 const MESH: &[Property] = &[p("filename", Text, ""), p("face_normals", Boolean, "false")];
 const FLIP_OBJ: &[Property] = &[p("flip_tex_coords", Boolean, "true")];
 const FLIP_PLY: &[Property] = &[p("flip_tex_coords", Boolean, "false")];
@@ -116,12 +120,11 @@ const SENSOR: &[Property] = &[
     ignored("shutter_open", Float),
     ignored("shutter_close", Float),
 ];
-const FOV: &[Property] = &[
-    p("fov", Float, ""),
-    p("fov_axis", Text, "x"),
-    p("focal_length", Text, "50mm"),
+const FOV: &[Property] = &[p("fov", Float, ""), p("fov_axis", Text, "x"), p("focal_length", Text, "50mm")];
+const PRINCIPAL_POINT: &[Property] = &[
     p("principal_point_offset_x", Float, "0"),
     p("principal_point_offset_y", Float, "0"),
+    ignored("focus_distance", Float),
 ];
 const SENSOR_PARTS: &[&str] = &["film", "sampler"];
 
@@ -134,8 +137,8 @@ const MICROFACETS: &[Property] =
     &[p("distribution", Text, "beckmann"), p("alpha", Scalar, "0.1"), ignored("sample_visible", Boolean)];
 const ANISOTROPIC: &[Property] = &[p("alpha_u", Scalar, "0.1"), p("alpha_v", Scalar, "0.1")];
 const GLASS: &[Property] = &[p("int_ior", Index, "bk7"), p("ext_ior", Index, "air")];
-const SPECULAR: &[Property] = &[p("specular_reflectance", Color, "1")];
-const SPECULAR_TRANSMITTANCE: &[Property] = &[p("specular_transmittance", Color, "1")];
+const SPECULAR: &[Property] = &[p("specular_reflectance", Texture, "1")];
+const SPECULAR_TRANSMITTANCE: &[Property] = &[p("specular_transmittance", Texture, "1")];
 const METAL: &[Property] = &[p("material", Text, "none"), p("eta", Color, ""), p("k", Color, "")];
 const COAT: &[Property] = &[
     p("diffuse_reflectance", Texture, "0.5"),
@@ -175,17 +178,17 @@ pub const PLUGINS: &[Plugin] = &[
         &[&[
             p("base_color", Texture, "0.5"),
             p("roughness", Scalar, "0.5"),
-            p("anisotropic", Float, "0"),
+            p("anisotropic", Scalar, "0"),
             p("metallic", Scalar, "0"),
-            p("spec_trans", Float, "0"),
+            p("spec_trans", Scalar, "0"),
             p("eta", Index, ""),
             p("specular", Float, "0.5"),
-            p("spec_tint", Float, "0"),
-            p("sheen", Float, "0"),
-            p("sheen_tint", Float, "0"),
-            p("flatness", Float, "0"),
-            p("clearcoat", Float, "0"),
-            p("clearcoat_gloss", Float, "0"),
+            p("spec_tint", Scalar, "0"),
+            p("sheen", Scalar, "0"),
+            p("sheen_tint", Scalar, "0"),
+            p("flatness", Scalar, "0"),
+            p("clearcoat", Scalar, "0"),
+            p("clearcoat_gloss", Scalar, "0"),
             ignored("diffuse_reflectance_sampling_rate", Float),
             ignored("main_specular_sampling_rate", Float),
             ignored("clearcoat_sampling_rate", Float),
@@ -196,9 +199,18 @@ pub const PLUGINS: &[Plugin] = &[
     plugin("bsdf", "blendbsdf", &[&[p("weight", Scalar, "")]], &["bsdf"]),
     plugin("bsdf", "twosided", &[], &["bsdf"]),
     plugin("bsdf", "null", &[], &[]),
-    plugin("bsdf", "normalmap", &[&[p("normalmap", Texture, "")]], &["bsdf"]),
+    plugin(
+        "bsdf",
+        "normalmap",
+        &[&[
+            p("normalmap", Texture, ""),
+            ignored("flip_invalid_normals", Boolean),
+            ignored("use_shadowing_function", Boolean),
+        ]],
+        &["bsdf"],
+    ),
     plugin("bsdf", "bumpmap", &[&[p("scale", Float, "1")]], &["bsdf", "texture"]),
-    plugin("emitter", "area", &[&[p("radiance", Color, "1")]], &[]),
+    plugin("emitter", "area", &[&[p("radiance", Texture, "1")]], &[]),
     plugin("emitter", "point", &[&[p("position", Vector, "0, 0, 0"), p("intensity", Color, "1")], TO_WORLD], &[]),
     plugin(
         "emitter",
@@ -208,11 +220,13 @@ pub const PLUGINS: &[Plugin] = &[
                 p("intensity", Color, "1"),
                 p("cutoff_angle", Float, "20"),
                 p("beam_width", Float, "3/4 of cutoff_angle"),
+                p("texture", Texture, "none"),
             ],
             TO_WORLD,
         ],
         &[],
     ),
+    plugin("emitter", "projector", &[&[p("irradiance", Texture, ""), p("scale", Float, "1")], FOV, TO_WORLD], &[]),
     plugin("emitter", "directional", &[&[p("direction", Vector, ""), p("irradiance", Color, "1")], TO_WORLD], &[]),
     plugin("emitter", "constant", &[&[p("radiance", Color, "1")]], &[]),
     plugin(
@@ -221,11 +235,11 @@ pub const PLUGINS: &[Plugin] = &[
         &[&[p("filename", Text, ""), p("scale", Float, "1"), ignored("mis_compensation", Boolean)], TO_WORLD],
         &[],
     ),
-    plugin("sensor", "perspective", &[FOV, &[ignored("focus_distance", Float)], SENSOR], SENSOR_PARTS),
+    plugin("sensor", "perspective", &[FOV, PRINCIPAL_POINT, SENSOR], SENSOR_PARTS),
     plugin(
         "sensor",
         "thinlens",
-        &[FOV, &[p("aperture_radius", Float, ""), p("focus_distance", Float, "0")], SENSOR],
+        &[FOV, &[p("aperture_radius", Float, ""), p("focus_distance", Float, "far_clip, 10000")], SENSOR],
         SENSOR_PARTS,
     ),
     plugin("sensor", "orthographic", &[SENSOR], SENSOR_PARTS),
@@ -247,7 +261,7 @@ pub const PLUGINS: &[Plugin] = &[
         ]],
         &["rfilter"],
     ),
-    plugin("rfilter", "box", &[], &[]),
+    plugin("rfilter", "box", &[&[p("radius", Float, "0.5")]], &[]),
     plugin("rfilter", "tent", &[&[p("radius", Float, "1")]], &[]),
     plugin("rfilter", "gaussian", &[&[p("stddev", Float, "0.5")]], &[]),
     plugin("rfilter", "mitchell", &[&[p("B", Float, "1/3"), p("C", Float, "1/3")]], &[]),
@@ -296,6 +310,19 @@ pub const PLUGINS: &[Plugin] = &[
     ),
     plugin("texture", "mesh_attribute", &[&[p("name", Text, "vertex_color"), p("scale", Float, "1")]], &[]),
     plugin("spectrum", "uniform", &[&[p("value", Float, "1")]], &[]),
+    plugin(
+        "spectrum",
+        "regular",
+        &[&[p("wavelength_min", Float, ""), p("wavelength_max", Float, ""), p("values", Text, "")]],
+        &[],
+    ),
+    plugin("spectrum", "irregular", &[&[p("wavelengths", Text, ""), p("values", Text, "")]], &[]),
+    plugin(
+        "spectrum",
+        "blackbody",
+        &[&[p("temperature", Float, ""), p("wavelength_min", Float, "360"), p("wavelength_max", Float, "830")]],
+        &[],
+    ),
     plugin("spectrum", "d65", &[&[p("scale", Float, "1"), p("color", Color, "1")]], &[]),
     plugin("spectrum", "srgb", &[&[p("color", Color, "")]], &[]),
 ];

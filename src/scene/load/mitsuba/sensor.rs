@@ -2,8 +2,8 @@
 
 use super::document::{Document, Node, Result};
 use super::object::Object;
-use crate::scene::{Camera, Film, Filter, Projection, RenderSettings, Sampler, Scene};
-use glam::DVec3;
+use crate::scene::{Camera, Film, Filter, Lens, Projection, RenderSettings, Sampler, Scene, Window};
+use glam::{DVec3, Vec2};
 
 /// Scale factors this close to 1 are rounding.
 const SCALE_TOLERANCE: f64 = 1e-3;
@@ -21,12 +21,6 @@ pub fn read_sensor(document: &Document, node: Node, scene: &mut Scene) -> Result
         read_sampler(&Object::open(document, child.node)?, &mut scene.settings)?;
     }
     scene.camera = read_camera(&object, &scene.film)?;
-    if object.plugin.name == "thinlens" {
-        let radius = object.float_in("aperture_radius", 0.0, 1e12)?;
-        object.required("aperture_radius", radius)?;
-        let location = document.location_of(node);
-        scene.warnings.push(format!("{location}: the sensor \"thinlens\" is drawn without its lens: all is in focus"));
-    }
     Ok(())
 }
 
@@ -35,9 +29,6 @@ fn read_camera(object: &Object, film: &Film) -> Result<Camera> {
     let place = object.transform("to_world")?.0;
     let [left, up, forward] = [place.matrix3.x_axis, place.matrix3.y_axis, place.matrix3.z_axis];
     let length = |v: DVec3| libm::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-    if place.matrix3.determinant() < 0.0 {
-        return Err(object.bad("to_world", "a camera that mirrors its picture is not supported"));
-    }
     let right_angled = |a: DVec3, b: DVec3| a.dot(b).abs() <= SCALE_TOLERANCE * length(a) * length(b);
     if !(right_angled(left, up) && right_angled(up, forward) && right_angled(forward, left)) {
         return Err(object.bad("to_world", "a camera whose axes are not at right angles is not supported"));
@@ -54,27 +45,40 @@ fn read_camera(object: &Object, film: &Film) -> Result<Camera> {
         if !(unscaled(left) && unscaled(up) && unscaled(forward)) {
             return Err(object.bad("to_world", "a perspective camera has no scale factors"));
         }
-        Projection::Perspective { fov_y: read_fov(object, film)? as f32 }
+        Projection::Perspective { fov_y: read_fov(object, f64::from(film.width) / f64::from(film.height))? as f32 }
     };
-    for name in ["principal_point_offset_x", "principal_point_offset_y"] {
-        let offset = if object.plugin.name == "orthographic" { None } else { object.float(name)? };
-        if offset.is_some_and(|offset| offset != 0.0) {
-            return Err(object.bad(name, "a camera with an offset principal point is not supported"));
-        }
-    }
+    let offset = |name: &str| match object.plugin.name {
+        "perspective" => Ok(object.float_in(name, -100.0, 100.0)?.unwrap_or(0.0) as f32),
+        _ => Ok(0.0),
+    };
+    // Mitsuba counts from the upper left corner of the film.
+    let shift = Vec2::new(offset("principal_point_offset_x")?, -offset("principal_point_offset_y")?);
     let eye = place.translation;
     Ok(Camera {
         eye: eye.as_vec3(),
         target: (eye + forward / length(forward)).as_vec3(),
         up: (up / length(up)).as_vec3(),
         projection,
+        lens: read_lens(object)?,
+        shift,
+        mirrored: place.matrix3.determinant() < 0.0,
     })
 }
 
-/// The vertical field of view in radians.
-fn read_fov(object: &Object, film: &Film) -> Result<f64> {
+/// The lens of a `thinlens`. Without a distance it is focused on the far clipping plane, as Mitsuba's is.
+fn read_lens(object: &Object) -> Result<Option<Lens>> {
+    if object.plugin.name != "thinlens" {
+        return Ok(None);
+    }
+    let radius = object.required("aperture_radius", object.float_in("aperture_radius", 0.0, 1e12)?)? as f32;
+    let far = object.float_in("far_clip", 1e-12, 1e12)?.unwrap_or(1e4);
+    let focus_distance = object.float_in("focus_distance", 1e-12, 1e12)?.unwrap_or(far) as f32;
+    Ok((radius > 0.0).then_some(Lens { radius, focus_distance }))
+}
+
+/// The vertical field of view in radians. `aspect`: width over height of the picture.
+pub fn read_fov(object: &Object, aspect: f64) -> Result<f64> {
     object.exclusive("fov", "focal_length")?;
-    let aspect = f64::from(film.width) / f64::from(film.height);
     let axes = [("x", "x"), ("y", "y"), ("diagonal", "diagonal"), ("smaller", "smaller"), ("larger", "larger")];
     let axis = object.choice("fov_axis", &axes)?.unwrap_or("x");
     let (tangent, axis) = match object.float_in("fov", 1e-3, 179.999)? {
@@ -113,25 +117,38 @@ fn read_film(object: &Object, film: &mut Film) -> Result<()> {
         Some(child) => read_filter(&Object::open(object.document, child.node)?)?,
         None => gaussian(0.5),
     };
-    let whole = [("crop_offset_x", 0), ("crop_offset_y", 0), ("crop_width", film.width), ("crop_height", film.height)];
-    for (name, all) in whole {
-        if object.integer(name, 0, 65_535)?.is_some_and(|found| found != i64::from(all)) {
-            return Err(object.bad(name, "a cropped film is not supported; render with --crop X0,Y0,X1,Y1"));
-        }
-    }
+    film.crop = read_crop(object, film)?;
     Ok(())
+}
+
+/// The part of the film that is rendered, if it says one. As in Mitsuba, width and height are those of the whole film
+/// where they are not written.
+fn read_crop(object: &Object, film: &Film) -> Result<Option<Window>> {
+    let names = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
+    let [x, y, width, height] = [(0, 0), (0, 0), (1, film.width), (1, film.height)];
+    let number = |k: usize, (low, default): (i64, u32)| -> Result<u32> {
+        Ok(object.integer(names[k], low, 65_535)?.unwrap_or(i64::from(default)) as u32)
+    };
+    let crop = Window { x: number(0, x)?, y: number(1, y)?, width: number(2, width)?, height: number(3, height)? };
+    if crop.x + crop.width > film.width || crop.y + crop.height > film.height {
+        let written = names.into_iter().find(|name| object.has(name)).unwrap_or(names[0]);
+        let (w, h) = (film.width, film.height);
+        return Err(object.bad(written, format!("the crop {crop:?} is not inside the film of {w} x {h}")));
+    }
+    Ok(names.iter().any(|name| object.has(name)).then_some(crop))
 }
 
 fn read_filter(object: &Object) -> Result<Filter> {
     let number = |name: &str, default: f64| Ok(object.float_in(name, 1e-3, 100.0)?.unwrap_or(default));
     let weight = |name: &str| Ok(object.float_in(name, -100.0, 100.0)?.unwrap_or(1.0 / 3.0) as f32);
     Ok(match object.plugin.name {
-        "box" => Filter::Box { radius: 0.5 },
+        "box" => Filter::Box { radius: number("radius", 0.5)? as f32 },
         "tent" => Filter::Tent { radius: number("radius", 1.0)? as f32 },
         "gaussian" => gaussian(number("stddev", 0.5)?),
         "mitchell" => Filter::Mitchell { radius: 2.0, b: weight("B")?, c: weight("C")? },
         "catmullrom" => Filter::Mitchell { radius: 2.0, b: 0.0, c: 0.5 },
-        name => return Err(object.document.bad(object.node, format!("the rfilter {name:?} is not supported"))),
+        // lanczos
+        _ => Filter::Lanczos { radius: object.integer("lobes", 1, 16)?.unwrap_or(3) as f32 },
     })
 }
 

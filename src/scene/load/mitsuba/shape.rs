@@ -77,14 +77,12 @@ impl Loader<'_> {
                 None => Ok(self.default_material(0.5)),
             };
         };
-        let radiance = self.area_radiance(emitter)?;
         let base = match bsdf {
             Some(bsdf) => self.material(bsdf.node)?,
             None => self.default_material(0.0),
         };
         let mut material = self.scene.materials[base.0 as usize].clone();
-        material.emission = radiance;
-        material.emission_two_sided = false;
+        self.glow(emitter, &mut material)?;
         Ok(self.add_material(material))
     }
 
@@ -137,7 +135,8 @@ impl Loader<'_> {
             Some(bsdf) => self.shows_vertex_colors(bsdf.node, 0)?,
             None => false,
         };
-        let key = MeshKey { file: path.display().to_string(), index, flat, flip, turned, colored };
+        let mirrored = shape.transform("to_world")?.0.matrix3.determinant() < 0.0;
+        let key = MeshKey { file: path.display().to_string(), index, flat, flip, turned, colored, mirrored };
         if let Some(id) = self.meshes.get(&key) {
             return Ok(*id);
         }
@@ -152,6 +151,10 @@ impl Loader<'_> {
         }
         if !colored {
             mesh.colors.clear();
+        }
+        // Without vertex normals of its own, Mitsuba takes a face's sides from its corners where they come to lie.
+        if mirrored && (flat || mesh.normals.is_empty()) {
+            mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
         }
         if flat {
             mesh.normals.clear();

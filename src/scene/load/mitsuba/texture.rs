@@ -7,7 +7,7 @@ use super::object::Object;
 use super::spectrum::Role;
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::{TextureFiles, intern};
-use crate::scene::{Scene, Texture, TextureData, TextureId, Wrap};
+use crate::scene::{Rgb, Scene, Texture, TextureData, TextureId, Wrap};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -54,24 +54,25 @@ impl Textures {
     /// The texture with its luminance in every channel: what a number takes from a coloured picture.
     pub fn grey(&mut self, id: TextureId, scene: &mut Scene) -> TextureId {
         let texture = &scene.textures[id.0 as usize];
-        let linear = |code: u8| crate::scene::load::image::srgb_to_linear(f64::from(code) / 255.0) as f32;
-        let luminance = |r: f32, g: f32, b: f32| (0.212671 * r + 0.715160 * g) + 0.072169 * b;
-        let spread = |v: f32| [v, v, v, 1.0];
-        let texels: Vec<[f32; 4]> = match &texture.data {
-            TextureData::Srgb8(texels) if texels.iter().any(|[r, g, b, _]| r != g || g != b) => {
-                texels.iter().map(|t| spread(luminance(linear(t[0]), linear(t[1]), linear(t[2])))).collect()
+        let coloured = match &texture.data {
+            TextureData::Srgb8(texels) | TextureData::Linear8(texels) => {
+                texels.iter().any(|[r, g, b, _]| r != g || g != b)
             }
-            TextureData::Linear8(texels) if texels.iter().any(|[r, g, b, _]| r != g || g != b) => {
-                let part = |code: u8| f32::from(code) / 255.0;
-                texels.iter().map(|t| spread(luminance(part(t[0]), part(t[1]), part(t[2])))).collect()
-            }
-            TextureData::Float(texels) if texels.iter().any(|[r, g, b, _]| r != g || g != b) => {
-                texels.iter().map(|t| spread(luminance(t[0], t[1], t[2]))).collect()
-            }
-            _ => return id,
+            TextureData::Float(texels) => texels.iter().any(|[r, g, b, _]| r != g || g != b),
+            TextureData::Pattern(_) => false,
         };
-        let grey = Texture { data: TextureData::Float(Arc::new(texels)), ..texture.clone() };
+        if !coloured {
+            return id;
+        }
+        let spread = luminances(&texture.data).into_iter().map(|v| [v, v, v, 1.0]).collect();
+        let grey = Texture { data: TextureData::Float(Arc::new(spread)), ..texture.clone() };
         intern(&mut scene.textures, grey)
+    }
+
+    /// The mean luminance of a texture.
+    pub fn mean(&self, id: TextureId, scene: &Scene) -> f64 {
+        let values = luminances(&scene.textures[id.0 as usize].data);
+        values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len().max(1) as f64
     }
 
     fn bitmap(&mut self, object: &Object) -> Result<Texture> {
@@ -85,6 +86,25 @@ impl Textures {
         (texture.wrap_u, texture.wrap_v) = (wrap, wrap);
         place(&mut texture, object)?;
         Ok(texture)
+    }
+}
+
+/// One texel of a colour.
+pub fn uniform(color: Rgb) -> Texture {
+    Texture::new("uniform", 1, 1, TextureData::Float(Arc::new(vec![[color.x, color.y, color.z, 1.0]])))
+}
+
+/// Of every texel; none of a pattern, which no scene of Mitsuba's has.
+fn luminances(data: &TextureData) -> Vec<f32> {
+    let luminance = |[r, g, b]: [f32; 3]| (0.212671 * r + 0.715160 * g) + 0.072169 * b;
+    let linear = |code: u8| crate::scene::load::image::srgb_to_linear(f64::from(code) / 255.0) as f32;
+    match data {
+        TextureData::Srgb8(texels) => texels.iter().map(|t| luminance([t[0], t[1], t[2]].map(linear))).collect(),
+        TextureData::Linear8(texels) => {
+            texels.iter().map(|t| luminance([t[0], t[1], t[2]].map(|code| f32::from(code) / 255.0))).collect()
+        }
+        TextureData::Float(texels) => texels.iter().map(|t| luminance([t[0], t[1], t[2]])).collect(),
+        TextureData::Pattern(_) => Vec::new(),
     }
 }
 

@@ -40,7 +40,7 @@ fn step(document: &Document, node: Node) -> Result<DAffine3> {
             }
             Ok(Transform::rotate(axis.as_vec3(), angle.to_radians()).0)
         }
-        "lookat" => look_at(document, node),
+        "lookat" | "look_at" => look_at(document, node),
         "matrix" => matrix(document, node),
         tag => Err(document.bad(node, format!("<{tag}> is no step of a transform; steps are {}", STEPS.join(", ")))),
     }

@@ -65,7 +65,12 @@ pub static RENDER: Section = Section {
             "0",
             "Largest channel that one contribution of scattered light may add, against bright specks; darkens the picture, and says how often. 0: no limit (path)",
         ),
-        key("shadows", Kind::Boolean, "true", "Trace shadow rays"),
+        key(
+            "shadows",
+            Kind::Special("true, false or \"filtered\""),
+            "true",
+            "Trace shadow rays. true: panes (`k_t`, `opacity`) stop none, or under `path` and `direct`, which find the way through them by chance, all. `\"filtered\"`: each pane on the way weakens the light to k_t, or colours it by k_t O_t if it is a filter",
+        ),
         key(
             "shading",
             Kind::Choice(&SHADING_NAMES),
@@ -167,6 +172,18 @@ pub static CAMERA: Section = Section {
         .only(&["perspective"]),
         key("height", Kind::Number(Range::POSITIVE), "required", "Height of the view, scene units")
             .only(&["orthographic"]),
+        key(
+            "lens_radius",
+            Kind::Number(Range::NOT_NEGATIVE),
+            "0",
+            "Radius of a thin lens, scene units: what is nearer or farther than `focus_distance` blurs, a point at distance z to a disk of `lens_radius` |1 - z / `focus_distance`| there. 0: a pinhole, all is sharp",
+        ),
+        key(
+            "focus_distance",
+            Kind::Number(Range::POSITIVE),
+            "the distance to `target`",
+            "From the lens along the view to the plane that is sharp, scene units",
+        ),
     ],
 };
 
@@ -323,6 +340,16 @@ pub static GRID: Section = Section {
 
 const PLACED: &[&str] = &["point", "spot"];
 
+/// Flaps, one key an axis.
+const fn flaps(name: &'static str, meaning: &'static str) -> Key {
+    key(name, Kind::Special("two numbers [min, max]"), "none", meaning)
+}
+
+const FLAPS_X: Key =
+    flaps("flaps_x", "Warn's flaps (barn doors): the light reaches only what has its x, in the world, between the two");
+const FLAPS_Y: Key = flaps("flaps_y", "The same for y: light for the actor, none for the floor");
+const FLAPS_Z: Key = flaps("flaps_z", "The same for z");
+
 pub static LIGHT: Section = Section {
     name: "[[light]]",
     noun: "[[light]]",
@@ -338,6 +365,9 @@ pub static LIGHT: Section = Section {
         key("outer_angle", Kind::Number(Range::above(0.0, 90.0)), "30", "Half angle of the cone δ, degrees: no light beyond").only(&["spot"]),
         key("inner_angle", Kind::Number(Range::new(0.0, 90.0)), "`outer_angle`", "Half angle where the light begins to fall off towards the edge, degrees; equal to `outer_angle`: a hard edge").only(&["spot"]),
         key("exponent", Kind::Number(Range::new(0.0, 1.0e6)), "0", "Warn's p: the intensity is times cos^p of the angle off the axis").only(&["spot"]),
+        FLAPS_X,
+        FLAPS_Y,
+        FLAPS_Z,
         key("casts_shadow", Kind::Boolean, "true", "Whether things stop it"),
     ],
 };

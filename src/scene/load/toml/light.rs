@@ -6,7 +6,7 @@ use super::keys::Range;
 use super::names::Names;
 use super::reader::{Reader, Result, numbers, unit};
 use super::settings::LightSettings;
-use crate::scene::{Attenuation, IntensityUnit, Light, LightKind, Rgb};
+use crate::scene::{Attenuation, Flaps, IntensityUnit, Light, LightKind, Rgb};
 use glam::Vec3;
 
 /// All lights of the document.
@@ -46,7 +46,9 @@ fn read_light(table: &Reader, settings: &LightSettings, warnings: &mut Vec<Strin
         intensity: table.color("intensity")?.unwrap_or(Rgb::ONE) * table.color("color")?.unwrap_or(Rgb::ONE),
         unit: settings.unit,
         attenuation: read_attenuation(table, settings.unit)?,
+        flaps: read_flaps(table)?,
         casts_shadow: table.boolean("casts_shadow")?.unwrap_or(true),
+        slide: None,
     })
 }
 
@@ -68,6 +70,18 @@ fn read_spot(table: &Reader, position: Vec3) -> Result<LightKind> {
     let exponent = table.float("exponent")?.unwrap_or(0.0);
     let [inner, outer] = [inner, outer].map(|degrees| degrees.to_radians() as f32);
     Ok(LightKind::Spot { position, direction, inner, outer, exponent })
+}
+
+fn read_flaps(table: &Reader) -> Result<Flaps> {
+    let mut flaps = Flaps::NONE;
+    for (axis, key) in ["flaps_x", "flaps_y", "flaps_z"].into_iter().enumerate() {
+        let Some([low, high]) = table.numbers::<2>(key, Range::ANY)? else { continue };
+        if low > high {
+            return Err(table.bad(key, format!("{key:?} = [{low}, {high}] has its smaller number last")));
+        }
+        (flaps.min[axis], flaps.max[axis]) = (low as f32, high as f32);
+    }
+    Ok(flaps)
 }
 
 fn read_attenuation(table: &Reader, unit: IntensityUnit) -> Result<Attenuation> {

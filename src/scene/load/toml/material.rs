@@ -92,6 +92,7 @@ fn read_material(
         textures,
         casts_shadow: table.boolean("casts_shadow")?,
         opacity: table.float("opacity")?.unwrap_or(1.0),
+        priority: table.integer("priority")?,
         two_sided: table.boolean("two_sided")?.unwrap_or(true),
         emission_two_sided: table.boolean("emission_two_sided")?.unwrap_or(true),
         model,

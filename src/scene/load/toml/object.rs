@@ -192,7 +192,7 @@ impl Objects<'_> {
             for binding in &mut material.textures {
                 binding.texture.0 += textures;
             }
-            if let Model::Blend { a, b, .. } = &mut material.model {
+            if let Model::Blend { a, b, .. } | Model::Sides { front: a, back: b } = &mut material.model {
                 a.0 += materials;
                 b.0 += materials;
             }

@@ -6,11 +6,12 @@ use super::keys::Range;
 use super::place::read_rotation;
 use super::reader::{Reader, Result, in_range};
 use super::texture::Textures;
+use crate::scene::Shadows;
 use crate::scene::{
-    Background, Camera, Environment, Film, Filter, Integrator, IntensityUnit, Projection, RenderSettings, Sampler,
-    Shading, ToneMap,
+    Background, Camera, Environment, Film, Filter, Integrator, IntensityUnit, Lens, Projection, RenderSettings,
+    Sampler, Shading, ToneMap,
 };
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// What `[render]` says beside `RenderSettings`.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +46,14 @@ pub fn read_render(root: &Reader, settings: &mut RenderSettings, light: &mut Lig
     if let Some(clamp) = table.float("clamp")? {
         settings.clamp = (clamp > 0.0).then_some(clamp);
     }
-    set(&mut settings.shadows, table.boolean("shadows")?);
+    if let Some(node) = table.node("shadows") {
+        settings.shadows = match &node.value {
+            Value::Boolean(true) => Shadows::Opaque,
+            Value::Boolean(false) => Shadows::Off,
+            Value::String(text) if text == "filtered" => Shadows::Filtered,
+            _ => return Err(table.mismatch("shadows", node)),
+        };
+    }
     set(&mut settings.shading, table.choice("shading", &SHADINGS)?);
     set(&mut light.unit, table.choice("intensity", &units)?);
     set(&mut light.ambient, table.color("ambient")?);
@@ -127,14 +135,32 @@ pub fn read_camera(root: &Reader, film: &Film, base: Option<Camera>) -> Result<O
         Some(base) => table.vector("eye")?.unwrap_or(base.eye),
         None => table.required("eye", table.vector("eye")?)?,
     };
+    let target = table.vector("target")?.unwrap_or(base.map_or(Vec3::ZERO, |base| base.target));
     let camera = Camera {
         eye,
-        target: table.vector("target")?.unwrap_or(base.map_or(Vec3::ZERO, |base| base.target)),
+        target,
         up: table.vector("up")?.unwrap_or(base.map_or(Vec3::Y, |base| base.up)),
         projection: read_projection(&table, film, base.map(|base| base.projection))?,
+        lens: None,
+        shift: base.map_or(Vec2::ZERO, |base| base.shift),
+        mirrored: base.is_some_and(|base| base.mirrored),
     };
     check_view(&table, &camera)?;
-    Ok(Some(camera))
+    let sharp = base.and_then(|base| base.lens);
+    Ok(Some(Camera { lens: read_lens(&table, camera.eye.as_dvec3().distance(target.as_dvec3()), sharp)?, ..camera }))
+}
+
+/// The lens, in focus at the target, which is `distance` away, unless it says otherwise.
+fn read_lens(table: &Reader, distance: f64, base: Option<Lens>) -> Result<Option<Lens>> {
+    let radius = table.float("lens_radius")?.or(base.map(|base| base.radius)).filter(|radius| *radius > 0.0);
+    let focus_distance = table.float("focus_distance")?.or(base.map(|base| base.focus_distance));
+    match radius {
+        Some(radius) => Ok(Some(Lens { radius, focus_distance: focus_distance.unwrap_or(distance as f32) })),
+        None if table.has("focus_distance") => {
+            Err(table.bad("focus_distance", "\"focus_distance\" has no meaning without a \"lens_radius\" above 0"))
+        }
+        None => Ok(None),
+    }
 }
 
 fn read_projection(table: &Reader, film: &Film, base: Option<Projection>) -> Result<Projection> {

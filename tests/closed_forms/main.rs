@@ -1,0 +1,119 @@
+//! Pictures with a closed form: the lens, many lights, panes and their shadows, nested media. On the CPU backend, and bit for
+//! bit on the device.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/device.rs"]
+mod device;
+mod lens;
+mod many_lights;
+mod nested;
+mod panes;
+#[path = "../common/scenes.rs"]
+mod scenes;
+
+use glam::Vec3;
+use gonio::bake::bake;
+use gonio::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
+use gonio::scene::*;
+use scenes::{assert_same, render, render_cpu};
+
+/// The picture on the CPU backend.
+fn picture(scene: &Scene) -> Vec<[f32; 4]> {
+    render_cpu(scene, &bake(scene).expect("bakes")).resolve().pixels
+}
+
+/// Mean of a channel over the picture, and its standard error: pixels are independent of one another.
+#[derive(Clone, Copy, Debug)]
+struct Mean {
+    value: f64,
+    error: f64,
+}
+
+fn mean_of(values: Vec<f64>) -> Mean {
+    let count = values.len() as f64;
+    let value = values.iter().sum::<f64>() / count;
+    let variance = values.iter().map(|v| (v - value) * (v - value)).sum::<f64>() / (count - 1.0);
+    Mean { value, error: (variance / count).sqrt() }
+}
+
+/// Of the green channel.
+fn mean(scene: &Scene) -> Mean {
+    mean_of(picture(scene).iter().map(|pixel| f64::from(pixel[1])).collect())
+}
+
+/// Five standard errors, one in two million, and 2e-5 of the value for rounding.
+#[track_caller]
+fn assert_mean(found: Mean, wanted: f64, what: &str) {
+    let tolerance = 5.0 * found.error + 2.0e-5 * wanted;
+    assert!((found.value - wanted).abs() <= tolerance, "{what}: {found:?} instead of {wanted}");
+}
+
+/// Both memory paths of the device, with chunks of any size and very small ones, give the CPU's bits. False without a device.
+#[track_caller]
+fn same_on_the_device(scene: &Scene, what: &str) -> bool {
+    let data = bake(scene).expect("bakes");
+    let reference = render_cpu(scene, &data);
+    for (fetch, chunk) in [(FetchChoice::Texel, None), (FetchChoice::Storage, Some(100))] {
+        if device::context().is_none() {
+            return false;
+        }
+        let options = VulkanOptions { fetch, chunk, validate: true, ..VulkanOptions::default() };
+        let renderer = VulkanRenderer::new(&data, options).unwrap();
+        let messages = renderer.messages();
+        let mut renderer = device::Validated::new(renderer, messages);
+        let film = render(&mut *renderer, scene, &data, 0..scene.settings.samples);
+        assert_same(&reference, &film, &format!("{what}, {fetch:?}, chunks of {chunk:?}"));
+    }
+    true
+}
+
+/// A level square of side 20 at height `y`, facing up.
+fn level(scene: &mut Scene, y: f32, material: u32) {
+    if scene.meshes.is_empty() {
+        scene.meshes.push(shape::quad([20.0, 20.0], 1));
+    }
+    let place = Transform::translate(Vec3::Y * y);
+    let level = common::object(Geometry::Mesh(MeshId(0)), place);
+    scene.objects.push(Object { name: format!("at {y}"), material: Some(MaterialId(material)), ..level });
+}
+
+/// Straight down from `y` onto 16 x 16 pixels, `height` wide.
+fn look_down(scene: &mut Scene, y: f32, height: f32) {
+    (scene.film.width, scene.film.height) = (16, 16);
+    scene.camera = Camera {
+        eye: Vec3::Y * y,
+        target: Vec3::ZERO,
+        up: Vec3::NEG_Z,
+        projection: Projection::Orthographic { height },
+        lens: None,
+        shift: glam::Vec2::ZERO,
+        mirrored: false,
+    };
+}
+
+fn light(kind: LightKind, intensity: f32) -> Light {
+    Light {
+        name: "light".into(),
+        kind,
+        intensity: Rgb::splat(intensity),
+        unit: IntensityUnit::Radiometric,
+        attenuation: Attenuation::InverseSquare,
+        flaps: Flaps::NONE,
+        casts_shadow: true,
+        slide: None,
+    }
+}
+
+/// Straight down.
+fn sun(irradiance: f32) -> Light {
+    light(LightKind::Directional { direction: Vec3::NEG_Y }, irradiance)
+}
+
+fn matte(color: Rgb) -> Material {
+    Material { color, k_d: 1.0, k_s: 0.0, ..Material::grey("matte") }
+}
+
+fn pane(color: Rgb, transparency: Transparency) -> Material {
+    Material { transparency: Some(transparency), ..matte(color) }
+}
