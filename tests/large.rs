@@ -6,21 +6,28 @@ mod device;
 #[path = "common/scenes.rs"]
 mod scenes;
 
+use glam::Vec3;
 use gonio::bake::bake;
 use gonio::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
 use gonio::scene::load::load;
+use gonio::scene::{Projection, Scene};
 use std::path::Path;
 
-/// The picture of a scene file's text, row by row, linear red, green and blue; the device's through both memory paths is
-/// bit for bit the same.
-fn picture(folder: &Path, text: &str) -> Vec<[f64; 3]> {
+/// A scene file's text, loaded without a warning.
+fn read(folder: &Path, text: &str) -> Scene {
     let file = folder.join("a.toml");
     std::fs::write(&file, text).expect("writable");
     let scene = load(&file, &[]).unwrap_or_else(|error| panic!("{error}"));
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-    let data = bake(&scene).expect("baked");
-    let reference = scenes::render_cpu(&scene, &data);
-    for fetch in [FetchChoice::Texel, FetchChoice::Storage] {
+    scene
+}
+
+/// A scene's picture, row by row, linear red, green and blue; the device's through these memory paths is bit for bit the
+/// same.
+fn picture(scene: &Scene, paths: &[FetchChoice]) -> Vec<[f64; 3]> {
+    let data = bake(scene).expect("baked");
+    let reference = scenes::render_cpu(scene, &data);
+    for &fetch in paths {
         if device::context().is_none() {
             break;
         }
@@ -28,7 +35,7 @@ fn picture(folder: &Path, text: &str) -> Vec<[f64; 3]> {
         let renderer = VulkanRenderer::new(&data, options).expect("a renderer");
         let messages = renderer.messages();
         let mut renderer = device::Validated::new(renderer, messages);
-        let film = scenes::render(&mut *renderer, &scene, &data, 0..scene.settings.samples);
+        let film = scenes::render(&mut *renderer, scene, &data, 0..scene.settings.samples);
         scenes::assert_same(&reference, &film, &format!("{fetch:?}"));
     }
     reference.resolve().pixels.iter().map(|pixel| [pixel[0], pixel[1], pixel[2]].map(f64::from)).collect()
@@ -55,17 +62,22 @@ fn every_part_of_a_texture_of_8192_by_8192_is_found() {
     written.expect("written");
     drop(pixels);
     // The whole texture, one texel of 128 x 128 in each pixel; then 64 x 64 texels around a corner of tiles, one in each.
-    let cases = [(0.0, 0.0, 1.0), (0.375, -0.125, 64.0 / 8192.0), (-0.496_093_75, 0.496_093_75, 64.0 / 8192.0)];
-    for (x, y, height) in cases {
-        let text = format!(
-            "[render]\nintegrator = \"whitted\"\nsamples = 1\nsampler = \"stratified\"\n[film]\nsize = [64, 64]\n\
-             filter = {{ type = \"box\", radius = 1e-3 }}\n[camera]\nprojection = \"orthographic\"\neye = [{x}, {y}, 5]\n\
-             target = [{x}, {y}, 0]\nheight = {height}\n[[material]]\nname = \"m\"\nmodel = \"emissive\"\n\
-             texture = {{ file = \"large.png\", filter = \"nearest\", colorspace = \"linear\" }}\n[[object]]\n\
-             shape = \"quad\"\nsize = [1, 1]\nrotate = [1, 0, 0, 90]\nmaterial = \"m\"\n[[light]]\n\
-             type = \"directional\"\ndirection = [0, 0, -1]\n"
-        );
-        let seen = picture(folder.path(), &text);
+    let cases: [(f64, f64, f64, &[FetchChoice]); 3] = [
+        (0.0, 0.0, 1.0, &[FetchChoice::Texel, FetchChoice::Storage]),
+        (0.375, -0.125, 64.0 / 8192.0, &[FetchChoice::Storage]),
+        (-0.496_093_75, 0.496_093_75, 64.0 / 8192.0, &[]),
+    ];
+    let text = "[render]\nintegrator = \"whitted\"\nsamples = 1\nsampler = \"stratified\"\n[film]\nsize = [64, 64]\n\
+        filter = { type = \"box\", radius = 1e-3 }\n[camera]\nprojection = \"orthographic\"\neye = [0, 0, 5]\nheight = 1\n\
+        [[material]]\nname = \"m\"\nmodel = \"emissive\"\n\
+        texture = { file = \"large.png\", filter = \"nearest\", colorspace = \"linear\" }\n[[object]]\nshape = \"quad\"\n\
+        size = [1, 1]\nrotate = [1, 0, 0, 90]\nmaterial = \"m\"\n[[light]]\ntype = \"directional\"\ndirection = [0, 0, -1]\n";
+    let mut scene = read(folder.path(), text);
+    for (x, y, height, paths) in cases {
+        scene.camera.eye = Vec3::new(x as f32, y as f32, 5.0);
+        scene.camera.target = Vec3::new(x as f32, y as f32, 0.0);
+        scene.camera.projection = Projection::Orthographic { height: height as f32 };
+        let seen = picture(&scene, paths);
         for row in 0..64u32 {
             for column in 0..64u32 {
                 let at = |start: f64, pixel: u32| ((start + height * (f64::from(pixel) + 0.5) / 64.0) * 8192.0) as u32;
@@ -98,7 +110,7 @@ fn a_normal_map_leans_with_its_coordinates_on_a_mirrored_instance() {
         instances = [\n{ rotate = [1, 0, 0, 90], translate = [-0.5, 0, 0] },\n\
         { scale = [-1, 1, 1], rotate = [1, 0, 0, 90], translate = [0.5, 0, 0] },\n]\n[[light]]\ntype = \"directional\"\n\
         direction = [-0.8, 0, -0.6]\nintensity = 1\n";
-    let seen = picture(folder.path(), text);
+    let seen = picture(&read(folder.path(), text), &[FetchChoice::Texel, FetchChoice::Storage]);
     // L = (.8, 0, .6); u grows to the right on the left instance, to the left on the mirrored one.
     for (column, leaning) in [(16, 1.0), (48, -1.0)] {
         let expected = (leaning * 0.8 + 2.0 * 0.6) / root;

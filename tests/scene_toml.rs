@@ -466,7 +466,7 @@ fn flaps_lenses_shadows_and_priorities_out_of_range_are_refused() {
     );
     let expected = "a.toml:2:18: \"focus_distance\" has no meaning without a \"lens_radius\" above 0";
     refuses(LEAST.replace("[camera]\n", "[camera]\nfocus_distance = 2\n"), expected);
-    let expected = "a.toml:7:11: \"shadows\" must be true, false or \"filtered\", found \"soft\"";
+    let expected = "a.toml:7:11: \"shadows\" must be true, false or \"filtered\", found the string \"soft\"";
     refuses(format!("{LEAST}[render]\nshadows = \"soft\"\n"), expected);
     let glass = format!("{LEAST}[[material]]\nname = \"a\"\nmodel = \"dielectric\"\npriority = 256\n");
     refuses(glass, "a.toml:9:12: \"priority\" must be an integer from 0 to 255, found 256");

@@ -12,6 +12,8 @@
 #include "shading/spectrum.glsl"
 #include "shading/texture.glsl"
 
+#ifdef GONIO_FETCH
+
 // Factor on the light that comes along `wi` (unit, to the light). The light has a slide.
 Spectrum slide_factor(Light light, vec3 wi) {
     vec3 direction = -wi;
@@ -43,5 +45,7 @@ Spectrum slide_factor(Light light, vec3 wi) {
     vec4 texel = sample_texture(load_texture(uint(picture)), vec2(u, v));
     return spectrum_from_rgb(texel.xyz * factor);
 }
+
+#endif
 
 #endif

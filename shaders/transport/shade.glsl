@@ -46,8 +46,10 @@ void shade(PathState incoming, Hit hit) {
     Surface surface = surface_at(path.ray, hit);
     uint named = surface.material;
     Material material = material_at(path.ray.direction, hit, key, DIMENSION_LEAF, surface);
-    if (SCENE_NESTED && !meet_interface(path, surface, material)) {
-        return;
+    if (SCENE_NESTED) {
+        if (!meet_interface(path, surface, material)) {
+            return;
+        }
     }
     if (SCENE_HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);

@@ -321,7 +321,10 @@ fn emitters_have_mitsubas_defaults() {
     );
     let LightKind::Spot { position, direction, inner, outer, exponent } = spot.kind else { panic!("{spot:?}") };
     assert_eq!((position, direction, exponent), (Vec3::X, Vec3::X, 0.0));
-    assert!((outer - 20.0_f32.to_radians()).abs() < 1e-6 && (inner - 15.0_f32.to_radians()).abs() < 1e-6);
+    // A hard edge at the cutoff; the slide falls off to there.
+    let Some([from, to]) = spot.slide.expect("a slide").ramp else { panic!("{spot:?}") };
+    assert!((outer - 20.0_f32.to_radians()).abs() < 1e-6 && inner == outer && to == outer);
+    assert!((from - 15.0_f32.to_radians()).abs() < 1e-6);
     let sun = light(
         "<emitter type=\"directional\"><vector name=\"direction\" value=\"0, -2, 0\"/><rgb name=\"irradiance\" value=\"5\"/></emitter>",
     );

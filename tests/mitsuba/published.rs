@@ -9,10 +9,16 @@ use gonio::scene::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-const SCENES: [(&str, &str); 3] = [
+const SCENES: [(&str, &str); 4] = [
     ("interior.xml", include_str!("published/interior.xml")),
     ("studio.xml", include_str!("published/studio.xml")),
     ("plain.xml", include_str!("published/plain.xml")),
+    (
+        "direct.xml",
+        "<scene version=\"3.0.0\"><integrator type=\"direct\"><integer name=\"emitter_samples\" value=\"2\"/>\
+         <integer name=\"bsdf_samples\" value=\"1\"/></integrator><sensor type=\"perspective\"/>\
+         <shape type=\"sphere\"/><emitter type=\"constant\"/></scene>",
+    ),
 ];
 
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
@@ -235,7 +241,7 @@ fn what_a_principled_surface_has_all_over_may_be_a_texture_of_which_the_mean_is_
     );
     let Model::Principled(principled) = &scene.materials[0].model else { panic!("{:?}", scene.materials) };
     assert!((principled.clearcoat - 0.35).abs() < 1e-6);
-    assert!(scene.warnings[0].contains("a.xml:2:80: \"clearcoat\""), "{:?}", scene.warnings);
+    assert!(scene.warnings[0].contains("a.xml:2:74: \"clearcoat\""), "{:?}", scene.warnings);
 }
 
 #[test]

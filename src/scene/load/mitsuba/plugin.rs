@@ -128,7 +128,8 @@ const PRINCIPAL_POINT: &[Property] = &[
 ];
 const SENSOR_PARTS: &[&str] = &["film", "sampler"];
 
-const SAMPLER: &[Property] = &[p("sample_count", Integer, "4"), p("seed", Integer, "0"), ignored("jitter", Boolean)];
+const SAMPLER: &[Property] = &[p("sample_count", Integer, "4"), p("seed", Integer, "0")];
+const JITTER: &[Property] = &[ignored("jitter", Boolean)];
 
 const PATH: &[Property] =
     &[p("max_depth", Integer, "-1"), p("rr_depth", Integer, "5"), p("hide_emitters", Boolean, "false")];
@@ -268,9 +269,9 @@ pub const PLUGINS: &[Plugin] = &[
     plugin("rfilter", "catmullrom", &[], &[]),
     plugin("rfilter", "lanczos", &[&[p("lobes", Integer, "3")]], &[]),
     plugin("sampler", "independent", &[SAMPLER], &[]),
-    plugin("sampler", "stratified", &[SAMPLER], &[]),
-    plugin("sampler", "multijitter", &[SAMPLER], &[]),
-    plugin("sampler", "orthogonal", &[SAMPLER, &[ignored("strength", Integer)]], &[]),
+    plugin("sampler", "stratified", &[SAMPLER, JITTER], &[]),
+    plugin("sampler", "multijitter", &[SAMPLER, JITTER], &[]),
+    plugin("sampler", "orthogonal", &[SAMPLER, JITTER, &[ignored("strength", Integer)]], &[]),
     plugin("sampler", "ldsampler", &[SAMPLER], &[]),
     plugin("integrator", "path", &[PATH], &[]),
     plugin("integrator", "volpath", &[PATH], &[]),
