@@ -226,6 +226,21 @@ fn a_scenes_comment_is_its_caption_and_its_name_has_its_row() {
     assert_eq!(numbered("ball"), (None, "ball"));
 }
 
+/// The first element with another number of parts than browsers take.
+fn misplaced(math: &str) -> Option<String> {
+    let text = math.replace("&nbsp;", "\u{a0}");
+    let document = roxmltree::Document::parse(&text).unwrap_or_else(|error| panic!("{text}: {error}"));
+    let wrong = |node: &roxmltree::Node| {
+        let parts = match node.tag_name().name() {
+            "msup" | "msub" | "mfrac" | "munder" | "mover" => 2,
+            "msubsup" | "munderover" => 3,
+            _ => return false,
+        };
+        node.children().filter(roxmltree::Node::is_element).count() != parts
+    };
+    document.descendants().find(wrong).map(|node| node.tag_name().name().to_owned())
+}
+
 #[test]
 fn every_formula_is_mathml() {
     for row in ROWS {
@@ -233,8 +248,11 @@ fn every_formula_is_mathml() {
             let math = mathml(latex);
             assert!(math.starts_with("<math") && math.trim_end().ends_with("</math>"), "{latex}: {math}");
             assert!(!math.contains("merror") && !math.contains("\\"), "{latex}: {math}");
+            assert_eq!(misplaced(&math), None, "{latex}");
         }
     }
+    // What the converter makes of a power of a function after a sign.
+    assert_eq!(misplaced(&mathml(r"-\tan^2 x")).as_deref(), Some("msup"));
     assert!(mathml(r"I = k_d").contains("<msub><mi>k</mi><mi>d</mi></msub>"), "{}", mathml(r"I = k_d"));
 }
 

@@ -68,7 +68,7 @@ pub const ROWS: &[Row] = &[
         10,
         "Ward's Gaussian",
         &[
-            r"\rho = \frac{\rho_d}{\pi} + \rho_s \frac{1}{\sqrt{\cos\theta_i \cos\theta_r}} \frac{\exp\left[-\tan^2\delta \left(\cos^2\phi / \alpha_x^2 + \sin^2\phi / \alpha_y^2\right)\right]}{4\pi \alpha_x \alpha_y}",
+            r"\rho = \frac{\rho_d}{\pi} + \rho_s \frac{1}{\sqrt{\cos\theta_i \cos\theta_r}} \frac{\exp\left[-{\tan}^2\delta \left({\cos}^2\phi / \alpha_x^2 + {\sin}^2\phi / \alpha_y^2\right)\right]}{4\pi \alpha_x \alpha_y}",
         ],
     ),
     row(
@@ -88,9 +88,9 @@ pub const ROWS: &[Row] = &[
         15,
         "Distributions of facets",
         &[
-            r"D_{\mathrm{Beckmann}} = \frac{1}{4 m^2 \cos^4\alpha}\, e^{-(\tan\alpha / m)^2}",
+            r"D_{\mathrm{Beckmann}} = \frac{1}{4 m^2 {\cos}^4\alpha}\, e^{-(\tan\alpha / m)^2}",
             r"D_{\mathrm{Gauss}} = c\, e^{-(\alpha / m)^2}",
-            r"D_{\mathrm{Trowbridge\text{-}Reitz}} = \left( \frac{c^2}{\cos^2\alpha\,(c^2 - 1) + 1} \right)^2, \quad D_{\mathrm{Phong}} = \cos^c \alpha",
+            r"D_{\mathrm{Trowbridge\text{-}Reitz}} = \left( \frac{c^2}{{\cos}^2\alpha\,(c^2 - 1) + 1} \right)^2, \quad D_{\mathrm{Phong}} = {\cos}^c \alpha",
         ],
     ),
     row(
@@ -116,7 +116,7 @@ pub const ROWS: &[Row] = &[
         19,
         "Limits of the model, lifted",
         &[
-            r"D(h) = \frac{1}{\pi \alpha_x \alpha_y \cos^4\theta_h}\, e^{-\tan^2\theta_h \left( \cos^2\phi_h / \alpha_x^2 + \sin^2\phi_h / \alpha_y^2 \right)}",
+            r"D(h) = \frac{1}{\pi \alpha_x \alpha_y {\cos}^4\theta_h}\, e^{-{\tan}^2\theta_h \left( {\cos}^2\phi_h / \alpha_x^2 + {\sin}^2\phi_h / \alpha_y^2 \right)}",
             r"\rho_d(\theta_i, \theta_r) = c\, \left(1 - a(\theta_i)\right)\left(1 - a(\theta_r)\right)",
         ],
     ),
@@ -131,7 +131,7 @@ pub const ROWS: &[Row] = &[
         "Refraction",
         &[
             r"\eta_i \sin\theta_i = \eta_t \sin\theta_t",
-            r"\cos^2\theta_t = 1 - \left(\frac{\eta_i}{\eta_t}\right)^2 (1 - \cos^2\theta_i)",
+            r"{\cos}^2\theta_t = 1 - \left(\frac{\eta_i}{\eta_t}\right)^2 (1 - {\cos}^2\theta_i)",
             r"T = \left( \frac{\eta_i}{\eta_t} \cos\theta_i - \cos\theta_t \right) N - \frac{\eta_i}{\eta_t} L",
             r"I = I_0\, e^{-\sigma d}",
         ],
