@@ -455,7 +455,7 @@ fn the_collected_malformed_obj_files_are_refused() {
 /// Cuts and bends valid files in thousands of ways; whatever comes out, it is a scene or an error.
 #[test]
 fn no_damage_to_a_scene_makes_the_reader_panic() {
-    let toml = include_str!("../scenes/lecture/cook-torrance.toml").as_bytes();
+    let toml = include_str!("../scenes/lecture/14-cook-torrance.toml").as_bytes();
     let obj = b"mtllib x.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl a\ns 1\nf 1/1/1 2/1/1 3//1 4\nf -1 -2 -3\n";
     let mut state = 1_u32;
     let mut random = move |below: usize| {

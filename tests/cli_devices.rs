@@ -46,7 +46,7 @@ fn the_json_has_what_the_table_has() {
 
 #[test]
 fn without_a_loader_auto_says_so_in_one_line_and_uses_the_cpu() {
-    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/lecture/lambert.toml");
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/lecture/01-lambert.toml");
     let render = |backend: &str| {
         let args = ["render", scene, "--size", "16x12", "--spp", "1", "-o", "-", "--backend", backend];
         gonio(&args).env(NO_LOADER.0, NO_LOADER.1).assert()

@@ -260,7 +260,7 @@ fn a_merl_file_is_scaled_and_marks_what_is_below_the_horizon() {
     }
     fs::write(folder.path().join("a.binary"), &bytes).expect("writable");
     let scene = try_read(folder.path(), "model = \"measured\"\nfile = \"a.binary\"").unwrap_or_else(|e| panic!("{e}"));
-    let Table::Merl { values } = &scene.tables[0];
+    let Table::Merl { values } = &scene.tables[0] else { panic!("a MERL table") };
     assert_eq!(values.len(), 3 * plane);
     for channel in 0..3 {
         assert!((values[channel * plane] - (channel + 1) as f32 * std::f32::consts::FRAC_1_PI).abs() < 1e-6);

@@ -5,13 +5,14 @@ mod device;
 #[path = "common/scenes.rs"]
 mod scenes;
 
-use gonio::bake::SceneData;
+use gonio::bake::{SceneData, bake};
 use gonio::film::Film;
 use gonio::render::cpu::CpuRenderer;
 use gonio::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
 use gonio::render::{Job, Renderer, Watch};
 use gonio::scene::Scene;
-use scenes::{Take, assert_same, prepare, render, render_cpu};
+use gonio::scene::load::{self, Panels};
+use scenes::{Take, assert_same, prepare, render, render_cpu, taken};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -23,29 +24,41 @@ fn vulkan(data: &SceneData, options: VulkanOptions) -> Option<device::Validated<
 }
 
 fn assert_parity(path: &Path, take: Take) -> Option<()> {
-    let (scene, data) = prepare(path, take);
+    assert_scene_parity(load::load(path, &[]).unwrap_or_else(|error| panic!("{error}")), take)
+}
+
+fn assert_scene_parity(scene: Scene, take: Take) -> Option<()> {
+    let scene = taken(scene, take);
+    let data = bake(&scene).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     let reference = render_cpu(&scene, &data);
     for fetch in [FetchChoice::Texel, FetchChoice::Storage] {
         let mut renderer = vulkan(&data, VulkanOptions { fetch, ..VulkanOptions::default() })?;
         let film = render(&mut *renderer, &scene, &data, 0..take.samples);
-        assert_same(&reference, &film, &format!("{} {take:?} {fetch:?}", path.display()));
+        assert_same(&reference, &film, &format!("{} {take:?} {fetch:?}", scene.name));
     }
     Some(())
 }
 
-/// Film hashes of every scene, recorded once. GONIO_BLESS=1 writes what the CPU backend renders now.
+/// Film hashes of every scene and of each of its panels, recorded once. GONIO_BLESS=1 writes what the CPU backend renders now.
 #[test]
 fn every_scene_has_its_recorded_hash_on_the_cpu() {
     let take = Take { width: 96, height: 64, samples: 4, seed: 0 };
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/goldens/film-hashes.json");
-    let name = |path: &Path| path.file_stem().unwrap().to_string_lossy().into_owned();
-    let found: BTreeMap<String, String> = scenes::all()
-        .iter()
-        .map(|path| {
-            let (scene, data) = prepare(path, take);
-            (name(path), render_cpu(&scene, &data).hash().to_string())
-        })
-        .collect();
+    let hash = |scene: &Scene| {
+        let scene = taken(scene.clone(), take);
+        render_cpu(&scene, &bake(&scene).unwrap()).hash().to_string()
+    };
+    let mut found = BTreeMap::new();
+    for path in scenes::all() {
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let panels = Panels::open(&path, &[], &[]).unwrap_or_else(|error| panic!("{error}"));
+        for (index, label) in panels.labels().iter().enumerate() {
+            let scene = panels.scene(Some(index)).unwrap_or_else(|error| panic!("{label}: {error}"));
+            assert!(scene.warnings.is_empty(), "{label}: {:?}", scene.warnings);
+            found.insert(format!("{name}, {label}"), hash(&scene));
+        }
+        found.insert(name, hash(&panels.scene(None).unwrap_or_else(|error| panic!("{error}"))));
+    }
     if std::env::var_os("GONIO_BLESS").is_some_and(|value| value == "1") {
         std::fs::create_dir_all(file.parent().unwrap()).unwrap();
         std::fs::write(&file, serde_json::to_string_pretty(&found).unwrap() + "\n").unwrap();
@@ -67,7 +80,11 @@ fn every_scene_is_the_same_on_cpu_and_device() {
         Take { width: 64, height: 48, samples: 16, seed: 2 },
     ];
     for (index, path) in scenes::all().iter().enumerate() {
-        if assert_parity(path, takes[index % takes.len()]).is_none() {
+        let panels = Panels::open(path, &[], &[]).unwrap_or_else(|error| panic!("{error}"));
+        // Of a scene with panels one: which, goes round from scene to scene.
+        let panel = index.checked_rem(panels.labels().len());
+        let scene = panels.scene(panel).unwrap_or_else(|error| panic!("{error}"));
+        if assert_scene_parity(scene, takes[index % takes.len()]).is_none() {
             return;
         }
     }

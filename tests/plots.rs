@@ -6,9 +6,9 @@ use gonio::film::tone::tone_curve;
 use gonio::layout::{DISTRIBUTION_BECKMANN, DISTRIBUTION_TROWBRIDGE_REITZ};
 use gonio::plot::curves::{self, FACETS, Interface, InterfaceKind, direction};
 use gonio::plot::figure::{Axis, Curve, Frame, nice_step, number};
-use gonio::plot::lecture::caption;
-use gonio::plot::page::{Entry, page};
-use gonio::plot::panels::{Picture, side_by_side};
+use gonio::plot::lecture::{ROWS, caption, numbered};
+use gonio::plot::page::{Entry, Part, mathml, page};
+use gonio::plot::panels::{Picture, sheet};
 use gonio::plot::shelf::{Shelf, shelf_of};
 use gonio::plot::{Figure, Format, lobes, render};
 use gonio::scene::{Material, Model, Rgb, ToneMap};
@@ -33,7 +33,7 @@ fn the_highlight_curves_are_powers_of_the_cosine() {
 #[test]
 fn the_distributions_are_normalised_as_their_note_says() {
     let figure = curves::distribution_figure(&FACETS, &[0.1, 0.4]);
-    assert_eq!(figure.curves.len(), 6);
+    assert_eq!(figure.curves.len(), 2 * FACETS.len());
     // LECTURE.md: Beckmann, alpha .1: D(0) = 31.8309879.
     assert!((value_at(&figure.curves[0], 0.0) - 31.8309879).abs() < 1e-3);
     for curve in &figure.curves {
@@ -85,6 +85,12 @@ fn fresnel_curves_have_the_lectures_values() {
     let Frame::Ramp { strips, .. } = curves::ramp_figure(&[copper]).frame else { panic!("a ramp") };
     let [first, last] = [strips[0].colors[0], strips[0].colors[179]];
     assert!(first[0] > first[1] && first[1] > first[2] && last.iter().all(|c| *c > 245), "{first:?} {last:?}");
+    // The 1982 paper's colours: the same at both ends, between them on the way to white by a common share.
+    let early = &strips[1].colors;
+    assert!(first.iter().zip(early[0]).all(|(a, b)| a.abs_diff(b) <= 1), "{first:?} {:?}", early[0]);
+    // A quarter of a degree before the end it is not all the way yet.
+    assert!(early[179].iter().all(|c| *c > 230), "{:?}", early[179]);
+    assert!(early.windows(2).all(|pair| (0..3).all(|c| pair[1][c] >= pair[0][c])), "never darker");
 }
 
 #[test]
@@ -195,22 +201,41 @@ fn files_are_the_same_bytes_each_time_and_have_the_size_asked_for() {
 }
 
 #[test]
-fn panels_stand_side_by_side_over_their_names() {
-    let picture = |value: u8| Picture { width: 40, height: 20, pixels: vec![value; 40 * 20 * 3] };
-    let whole = side_by_side(&[("one", picture(10)), ("two", picture(200))]).unwrap();
-    assert_eq!((whole.width, whole.height), (86, 50));
-    let at = |x: u32, y: u32| whole.pixels[((y * whole.width + x) * 3) as usize];
-    assert_eq!((at(0, 0), at(39, 19), at(42, 5), at(46, 0), at(85, 19)), (10, 10, 255, 200, 200));
-    let inked = |x: std::ops::Range<u32>| x.clone().any(|x| (20..50).any(|y| at(x, y) < 128));
-    assert!(inked(5..35) && inked(50..80) && !inked(41..45));
+fn panels_stand_in_rows_over_their_names() {
+    let picture = |value: u16| Picture { width: 40, height: 20, max: 65_535, pixels: vec![[value * 257; 4]; 40 * 20] };
+    let whole = sheet(&[("one", picture(10)), ("two", picture(200)), ("three", picture(90))], 2).unwrap();
+    // Two rows of a picture and a line of 24 pixels, gaps of 6.
+    assert_eq!((whole.width, whole.height, whole.max), (86, 94, 65_535));
+    let at = |x: u32, y: u32| whole.pixels[(y * whole.width + x) as usize][0];
+    let seen = [at(0, 0), at(39, 19), at(42, 5), at(46, 0), at(85, 19), at(3, 50), at(39, 69), at(60, 60)];
+    assert_eq!(seen.map(|v| v / 257), [10, 10, 255, 200, 200, 90, 90, 255]);
+    let inked =
+        |x: std::ops::Range<u32>, y: std::ops::Range<u32>| x.clone().any(|x| y.clone().any(|y| at(x, y) < 32_768));
+    assert!(inked(5..35, 20..44) && inked(50..80, 20..44) && !inked(41..45, 20..44) && inked(0..40, 70..94));
+    assert!(!inked(46..86, 50..94), "the last row has one picture");
 }
 
 #[test]
-fn a_scenes_comment_is_its_caption() {
-    assert_eq!(caption("# Row 8. Shading: a\n# b.\n\n[x]"), (Some(8), "Shading: a b.".into()));
-    assert_eq!(caption("# Rows 14 to 18. Copper.\n"), (Some(14), "Copper.".into()));
-    assert_eq!(caption("# Many copies. Of one.\n"), (None, "Many copies. Of one.".into()));
-    assert_eq!(caption("[render]\n"), (None, String::new()));
+fn a_scenes_comment_is_its_caption_and_its_name_has_its_row() {
+    assert_eq!(caption("# Row 8. Shading: a\n# b.\n\n[x]"), "Shading: a b.");
+    assert_eq!(caption("# Rows 14 to 18. Copper.\n"), "Copper.");
+    assert_eq!(caption("# Many copies. Of one.\n"), "Many copies. Of one.");
+    assert_eq!(caption("[render]\n"), "");
+    assert_eq!(numbered("02-phong"), (Some(2), "phong"));
+    assert_eq!(numbered("2nd-scene"), (None, "2nd-scene"));
+    assert_eq!(numbered("ball"), (None, "ball"));
+}
+
+#[test]
+fn every_formula_is_mathml() {
+    for row in ROWS {
+        for latex in row.formulae {
+            let math = mathml(latex);
+            assert!(math.starts_with("<math") && math.trim_end().ends_with("</math>"), "{latex}: {math}");
+            assert!(!math.contains("merror") && !math.contains("\\"), "{latex}: {math}");
+        }
+    }
+    assert!(mathml(r"I = k_d").contains("<msub><mi>k</mi><mi>d</mi></msub>"), "{}", mathml(r"I = k_d"));
 }
 
 #[test]
@@ -218,15 +243,16 @@ fn the_page_needs_nothing_else_and_escapes_what_it_shows() {
     let entry = Entry {
         name: "02-phong".into(),
         row: Some(2),
+        title: "phong".into(),
         caption: "x < y & z".into(),
-        formula: Some("I = 1"),
-        picture: vec![1, 2, 3],
-        plot: Some("<svg></svg>".into()),
+        pictures: vec![(Some("n < 2".into()), vec![1, 2, 3]), (Some("n > 2".into()), vec![4, 5, 6])],
+        columns: 2,
         text: "# <b>\n".into(),
     };
-    let page = page("T", &[entry]);
+    let page = page("T", &[Part { entries: vec![entry], plots: vec!["<svg></svg>".into()] }]);
     assert!(page.contains("x &lt; y &amp; z") && page.contains("# &lt;b&gt;") && page.contains("base64,AQID"));
-    assert!(page.contains("<h2>2 · phong</h2>") && page.contains("id=\"02-phong\""), "{page}");
+    assert!(page.contains("<h2>2 · Phong's highlight</h2>") && page.contains("<a href=\"#row-2\">"), "{page}");
+    assert!(page.contains("<figcaption>n &lt; 2</figcaption>") && page.contains("<math"), "{page}");
     let outside = ["http:", "https:", "src=\"/", "<link", "<script", "@import", "url("];
     assert!(outside.iter().all(|word| !page.contains(word)), "{page}");
 }
@@ -251,6 +277,7 @@ fn wrong_plots_are_refused_with_what_was_meant() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
     std::fs::write(folder.path().join("bad.toml"), "[camra]\n").unwrap();
+    std::fs::write(folder.path().join("bad.brdf"), "gonio-brdf 1\nlight 3\ndata text\n").unwrap();
     let cases: &[(&[&str], i32, &str)] = &[
         (&["plot", "lobs"], 2, "'lobe'"),
         (&["plot"], 2, "Usage"),
@@ -264,6 +291,16 @@ fn wrong_plots_are_refused_with_what_was_meant() {
         (&["plot", "edge", "-o", "none/a.svg"], 74, "none/a.svg"),
         (&["plot", "fresnel", "--metal", "Fe"], 2, "allowed: Cu, Au, Ag, Al, Cr"),
         (&["plot", "d", "--distribution", "ggx"], 2, "allowed: beckmann"),
+        (&["plot", "albedo", "--against", "colour"], 2, "angle, roughness"),
+        (&["plot", "albedo", "scene.toml", "--against", "roughness"], 2, "none of the materials has a roughness"),
+        (&["plot", "fit"], 2, "Usage"),
+        (&["plot", "fit", "none.binary"], 74, "none.binary"),
+        (&["plot", "fit", "bad.toml"], 65, "did you mean \"camera\"?"),
+        (&["plot", "fit", "scene.toml"], 2, "no measured material"),
+        (&["plot", "fit", "scene.toml", "--material", "bras"], 2, "did you mean \"brass\"?"),
+        (&["plot", "fit", "bad.brdf"], 65, "bad.brdf:2:1: unknown key \"light\""),
+        (&["plot", "fit", "bad.brdf", "--material", "brass"], 2, "this is a table"),
+        (&["plot", "fit", "scene.toml", "--model", "blinn"], 2, "allowed: ward, phong, cook-torrance"),
         (&["plot", "tone", "--size", "100x100"], 2, "240x180"),
         (&["render", "--gallery", "."], 2, "--output"),
         (&["render", "--gallery", "none", "-o", "out"], 74, "none"),
@@ -276,7 +313,7 @@ fn wrong_plots_are_refused_with_what_was_meant() {
     let mut left: Vec<String> =
         std::fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
     left.sort();
-    assert_eq!(left, ["bad.toml", "scene.toml"]);
+    assert_eq!(left, ["bad.brdf", "bad.toml", "scene.toml"]);
 }
 
 #[test]
@@ -301,11 +338,14 @@ fn a_gallery_is_a_folder_of_pictures_and_one_page() {
     let scenes = folder.path().join("scenes");
     std::fs::create_dir(&scenes).unwrap();
     std::fs::write(scenes.join("ball.toml"), SCENE).unwrap();
-    std::fs::write(scenes.join("phong.toml"), SCENE.replace("Row 1", "Row 2")).unwrap();
+    let panels = "[[panel]]\nlabel = \"bright\"\n[[panel]]\nlabel = \"dark\"\nset = [\"light.0.intensity=0.1\"]\n";
+    std::fs::write(scenes.join("02-phong.toml"), SCENE.to_owned() + panels).unwrap();
     let made = gonio(folder.path(), &["render", "--gallery", "scenes", "-o", "out", "--backend", "cpu"]);
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
     let page = std::fs::read_to_string(folder.path().join("out/index.html")).unwrap();
-    assert!(page.contains("A ball.") && page.contains("k_d I_p (N·L)") && page.contains("cosⁿ φ"));
+    assert!(page.contains("A ball.") && page.contains("Phong's highlight") && page.contains("cosⁿ φ"));
+    assert!(page.find("row-2") < page.find("#ball"), "rows first");
+    assert_eq!(page.matches("<figure>").count(), 3);
     let size = |name: &str| image::image_dimensions(folder.path().join("out").join(name)).unwrap();
-    assert_eq!((size("ball.png"), size("phong.png")), ((24, 16), (24, 46)));
+    assert_eq!((size("ball.png"), size("02-phong.png")), ((24, 16), (54, 40)));
 }

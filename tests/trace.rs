@@ -42,7 +42,7 @@ fn brute_force(scene: &SceneView, ray: &Ray, shadow: bool) -> Hit {
             }
             let face = load_face(scene, instance.first_face + primitive);
             let [v0, v1, v2] = [face.i0, face.i1, face.i2].map(|i| load_vertex(scene, i).position);
-            let found = intersect_triangle(&level, v0, v1, v2);
+            let found = intersect_triangle(&level, &v0, &v1, &v2);
             consider(found.x, found.y, found.z, id, primitive);
         }
     }

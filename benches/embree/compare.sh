@@ -4,7 +4,8 @@
 #   benches/embree/compare.sh SCENE...
 #
 # ROUNDS (5), RAYS (1000000) and WORK (a folder, temporary if not given) may be set. Every round runs each tracer once after
-# one warm-up; printed are the medians over the rounds, and the medians of the ratios within a round.
+# one warm-up; printed are the medians over the rounds, and the medians of the ratios within a round. Rows of rays are in
+# Mrays/s; the row "build" is in builds a second: gonio's whole bake, Embree's commit at high quality, obvhs's wide tree.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 root=$here/../..
@@ -37,10 +38,16 @@ while [ "$round" -le "$rounds" ]; do
         awk -v scene="$name" '
             /^  [a-z]+ .* rays, / { kind = $1 }
             /^    [^ ]+ +median / { print scene "\t" kind "\tgonio " $1 "\t" $3 }
+            $1 == "load" && $4 == "bake" && $5 > 0 { print scene "\tbuild\tgonio cpu\t" 1 / $5 }
         ' "$WORK/table" >> "$WORK/rates.new"
-        "$here/embree" --runs 1 --warmup 1 "$WORK/$name" >> "$WORK/rates.new"
+        "$here/embree" --runs 1 --warmup 1 "$WORK/$name" >> "$WORK/rates.new" 2> "$WORK/said" \
+            || { cat "$WORK/said" >&2; exit 1; }
         cargo bench -q --bench obvhs --manifest-path "$root/Cargo.toml" -- --runs 1 --warmup 1 "$WORK/$name" \
-            >> "$WORK/rates.new"
+            >> "$WORK/rates.new" 2>> "$WORK/said" || { cat "$WORK/said" >&2; exit 1; }
+        cat "$WORK/said" >&2
+        # "scene: tracer: build 1.23 s".
+        awk -F ': ' '/: build / { split($3, words, " "); if (words[2] > 0) print $1 "\tbuild\t" $2 "\t" 1 / words[2] }' \
+            "$WORK/said" >> "$WORK/rates.new"
     done
     sed "s/^/$round\t/" "$WORK/rates.new" >> "$WORK/rates"
     rm "$WORK/rates.new"
@@ -71,7 +78,7 @@ sort -s -t '	' -k2,2 "$WORK/rates" | awk -F '\t' '
     END {
         printf "scene\trays"
         for (t = 1; t <= tracer_count; t++) printf "\t%s", tracers[t]
-        print "\tvulkan/robust\tvulkan/fast\tcpu/obvhs"
+        print "\tvulkan/robust\tvulkan/fast\tcpu/obvhs\tcpu/robust"
         for (r = 1; r <= row_count; r++) {
             row = rows[r]
             printf "%s", row
@@ -81,7 +88,7 @@ sort -s -t '	' -k2,2 "$WORK/rates" | awk -F '\t' '
                 printf "\t%s", n ? sprintf("%.2f", median(list, n)) : "-"
             }
             print "\t" ratio(row, "gonio vulkan", "embree robust") "\t" ratio(row, "gonio vulkan", "embree fast") \
-                "\t" ratio(row, "gonio cpu", "obvhs")
+                "\t" ratio(row, "gonio cpu", "obvhs") "\t" ratio(row, "gonio cpu", "embree robust")
         }
     }
 '

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Traces the last round's shadow rays; what is unoccluded adds its light, and what panes let through goes on in the next.
+// Traces the last round's shadow rays; what is unoccluded adds its light. With filtered shadows they are traced to the
+// nearest thing in their way, and what panes let through goes on in the next round.
 #include "kernels/bindings.glsl"
 #include "kernels/queues.glsl"
 #include "trace/traverse.glsl"
@@ -11,8 +12,8 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= control.shadow_pending) return;
     if (SCENE_SHADOWS == SHADOWS_FILTERED) {
-        ShadowRay filtered = load_shadow_ray(control.shadow_first + i);
-        shade_shadow(filtered, trace_occluder(filtered.ray));
+        ShadowRay shadow = load_shadow_ray(control.shadow_first + i);
+        shade_shadow(shadow, trace_occluder(shadow.ray));
         return;
     }
     ShadowRay shadow = load_shadow_ray(i);

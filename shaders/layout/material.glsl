@@ -26,6 +26,8 @@ const uint MODEL_MEASURED = 18u;
 const uint MODEL_NULL = 19u;
 // Two materials, one after the other from `table` on: (1 - extra) of the first and extra of the second.
 const uint MODEL_BLEND = 20u;
+// Measured for directions of light (`shading/tabulated`).
+const uint MODEL_TABULATED = 21u;
 
 // Material flag: the filtered form of non-refractive transparency, I_1 + k_t O_t I_2.
 const uint MATERIAL_FILTERED = 1u;

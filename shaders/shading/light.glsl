@@ -74,10 +74,8 @@ bool within_flaps(Light light, vec3 position) {
 
 // The light as seen from `position` (world). Zero radiance, but a valid direction, if the two coincide or flaps are between.
 LightSample sample_light(Light light, vec3 position) {
-    if (HAS_FLAPS) {
-        if (!within_flaps(light, position)) {
-            return no_light();
-        }
+    if (HAS_FLAPS && !within_flaps(light, position)) {
+        return no_light();
     }
     if (light.kind == LIGHT_DIRECTIONAL) {
         return LightSample(-light.direction, T_INFINITE, spectrum_from_rgb(light.intensity), 0.0);

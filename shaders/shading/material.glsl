@@ -26,6 +26,7 @@
 #include "shading/rough_conductor.glsl"
 #include "shading/rough_dielectric.glsl"
 #include "shading/spectrum.glsl"
+#include "shading/tabulated.glsl"
 #include "shading/ward.glsl"
 
 // Kernels that know the scene leave out the models it does not have (`MODELS_PRESENT` in kernels/bindings.glsl).
@@ -52,6 +53,7 @@ Spectrum eval_material(Material material, vec3 wo, vec3 wi) {
     ARM(MODEL_ROUGH_PLASTIC, eval_rough_plastic(material, wo, wi))
     ARM(MODEL_PRINCIPLED, eval_principled(material, wo, wi))
     ARM(MODEL_MEASURED, eval_measured(material, wo, wi))
+    ARM(MODEL_TABULATED, eval_tabulated(material, wo, wi))
     default: break;
     }
     return spectrum_zero();
@@ -74,6 +76,7 @@ float pdf_material(Material material, vec3 wo, vec3 wi) {
     ARM(MODEL_ROUGH_PLASTIC, pdf_rough_plastic(material, wo, wi))
     ARM(MODEL_PRINCIPLED, pdf_principled(material, wo, wi))
     ARM(MODEL_MEASURED, pdf_measured(material, wo, wi))
+    ARM(MODEL_TABULATED, pdf_tabulated(material, wo, wi))
     default: break;
     }
     return 0.0;
@@ -93,6 +96,7 @@ DirectionSample sample_direction(Material material, vec3 wo, vec2 u, float u_lob
     ARM(MODEL_ROUGH_CONDUCTOR, sample_rough_conductor(material, wo, u, u_lobe))
     ARM(MODEL_ROUGH_PLASTIC, sample_rough_plastic(material, wo, u, u_lobe))
     ARM(MODEL_MEASURED, sample_measured(material, wo, u, u_lobe))
+    ARM(MODEL_TABULATED, sample_tabulated(material, wo, u, u_lobe))
     default: break;
     }
     return no_direction();

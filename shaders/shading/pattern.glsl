@@ -82,8 +82,7 @@ float fractal_noise(vec2 uv, uint octaves, float gain, uint seed, float width) {
     float sum = 0.0;
     float total = 0.0;
     uint count = octaves == 0u ? 1u : (octaves < OCTAVES_MOST ? octaves : OCTAVES_MOST);
-    uint octave = 0u;
-    do {
+    for (uint octave = 0u; octave < OCTAVES_MOST; octave++) {
         // From a quarter of the wavelength on, nothing is left at a half (Nyquist's limit).
         float kept = clamp_(2.0 - 4.0 * covered_width, 0.0, 1.0);
         vec2 inside = vec2(within_pattern(place.x), within_pattern(place.y));
@@ -94,8 +93,10 @@ float fractal_noise(vec2 uv, uint octaves, float gain, uint seed, float width) {
         strength *= gain;
         place = place * 2.0;
         covered_width *= 2.0;
-        octave += 1u;
-    } while (octave < count);
+        if (octave + 1u == count) {
+            break;
+        }
+    }
     return div(sum, total);
 }
 

@@ -109,16 +109,17 @@ vec4 read_image(Texture texture_record, vec2 uv) {
     vec4 image = vec4(0.0);
     // Left and right below, left and right above; nearest takes the first. One place that reads: it is inlined once.
     int corners = bilinear ? 4 : 1;
-    int corner = 0;
-    do {
+    for (int corner = 0; corner < 4; corner++) {
         int column_index = wrap_texel(int(left) + (corner & 1), int(texture_record.width), wrap_u);
         int row_index = wrap_texel(int(below) + (corner >> 1), int(texture_record.height), wrap_v);
         vec4 texel = read_texel(texture_record, column_index, row_index);
         // a + (b - a) t leaves equal neighbours exactly as they are.
         row = (corner & 1) == 0 ? texel : row + (texel - row) * weight_x;
         image = corner <= 1 ? row : image;
-        corner += 1;
-    } while (corner < corners);
+        if (corner + 1 == corners) {
+            break;
+        }
+    }
     return bilinear ? image + (row - image) * weight_y : image;
 }
 
@@ -133,16 +134,14 @@ vec4 filter_texture(Texture texture_record, vec2 uv, Detail detail) {
     float blend = lambda - finer;
     uint levels = blend > 0.0 ? 2u : 1u;
     vec4 result = vec4(0.0);
-    uint offset = 0u;
-    do {
+    for (uint offset = 0u; offset < 2u; offset++) {
         uint index = uint(finer) + offset;
         Texture level = texture_record;
         if (index != 0u) {
             level = load_texture(texture_record.first_level + (index - 1u));
         }
         vec4 sum = vec4(0.0);
-        uint probe = 0u;
-        do {
+        for (uint probe = 0u; probe < 8u; probe++) {
             vec2 place = uv + detail.spacing * ((float(probe) + 0.5) - 0.5 * float(detail.probes));
             vec4 texel = vec4(0.0);
             if (HAS_PATTERN && is_pattern) {
@@ -152,12 +151,16 @@ vec4 filter_texture(Texture texture_record, vec2 uv, Detail detail) {
                 texel = read_image(level, place);
             }
             sum = sum + texel;
-            probe += 1u;
-        } while (probe < detail.probes);
+            if (probe + 1u == detail.probes) {
+                break;
+            }
+        }
         vec4 mean = detail.probes == 1u ? sum : sum * rcp(float(detail.probes));
         result = offset == 0u ? mean : result + (mean - result) * blend;
-        offset += 1u;
-    } while (offset < levels);
+        if (offset + 1u == levels) {
+            break;
+        }
+    }
     return result;
 }
 

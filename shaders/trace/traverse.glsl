@@ -4,8 +4,9 @@
 // the children in the top byte | mask of inner children in the lowest byte), a *primitive group* is (first primitive, one
 // bit a primitive). What is not taken yet waits on a stack. Each turn takes one node or one primitive off, so the loops end.
 //
-// Three loops, one inside another, and not one loop with branches for both levels: devices that walk lanes in lockstep
-// run every branch of a loop's body on each turn, whether a lane takes it or not, so what is rare has a loop of its own.
+// Loops inside one another, and not one loop with branches for both levels: devices that walk lanes in lockstep run every
+// branch of a loop's body on each turn, whether a lane takes it or not, so what is rare has a loop of its own. Each ends by
+// a `break` at its end, under a header that decides nothing (ARCHITECTURE.md, "Loops").
 #ifndef TRACE_TRAVERSE_GLSL
 #define TRACE_TRAVERSE_GLSL
 #ifdef GONIO_FETCH
@@ -16,6 +17,8 @@
 #include "trace/sphere.glsl"
 #include "trace/triangle.glsl"
 
+// More turns than any loop here takes.
+const uint TURNS_MOST = 0xffffffffu;
 // Groups with no child left are at most this.
 const uint GROUP_EMPTY = 0x00ffffffu;
 // Hit bits of a group whose only child is a root: priority 7 of an empty mask of inner children.
@@ -28,10 +31,10 @@ bool is_closer(float t, uint instance, uint primitive, Hit hit) {
         || (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)));
 }
 
-// Index of the highest bit of 1 <= x < 2^24, from the exponent of the float that it makes exactly: devices that are CPUs
-// have no vector instruction for it.
+// Index of the highest bit of 1 <= x < 2^24.
 uint highest_bit(uint x) {
 #ifdef FETCH_TEXEL
+    // The exponent of the float that it makes exactly: CPU devices have no vector instruction for it.
     return (floatBitsToUint(float(int(x))) >> 23u) - 127u;
 #else
     return uint(findMSB(x));
@@ -90,10 +93,9 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
     uvec2 group = uvec2(root, GROUP_ROOT);
     uvec2 triangles = uvec2(0u);
     bool walking = true;
-    do {
+    for (uint turn = 0u; turn < TURNS_MOST; turn++) {
         // Nodes until there are triangles.
-        bool seeking = true;
-        do {
+        for (uint step_ = 0u; step_ < TURNS_MOST; step_++) {
             uint index = take_child(group, level.octant);
             stack[height] = group;
             height += group.y > GROUP_EMPTY ? 1u : 0u;
@@ -108,28 +110,37 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
                     group = stack[height];
                 }
             }
-            seeking = walking && triangles.y == 0u;
-        } while (seeking);
-        do {
+            if (!walking || triangles.y != 0u) {
+                break;
+            }
+        }
+        for (uint step_ = 0u; step_ < TURNS_MOST; step_++) {
             if (triangles.y != 0u) {
                 test_triangle(ray, level, instance, take_primitive(triangles), hit);
             }
-        } while (triangles.y != 0u);
-        walking = walking && !(any && hit.instance != INVALID);
-    } while (walking);
+            if (triangles.y == 0u) {
+                break;
+            }
+        }
+        if (!walking || (any && hit.instance != INVALID)) {
+            break;
+        }
+    }
 }
 
-// Tests what instance `id` holds, with `casting` only if it casts a shadow; `hit` becomes the closer of it and what is found.
-void test_instance(Ray ray, uint id, bool any, bool casting, inout Hit hit) {
+// Tests what stands at `place` of the top level's order; `hit` becomes the closer of it and what is found.
+void enter_instance(Ray ray, uint place, bool any, bool casting, inout Hit hit) {
+    uint id = load_top_instance(place);
     Instance record = load_instance(id);
     vec3 origin = object_origin(record, ray.origin);
-    if (!(casting && (record.flags & INSTANCE_NO_SHADOW) != 0u) && within_reach(origin)) {
-        LevelRay level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
-        if (SCENE_HAS_SPHERES && record.kind == KIND_SPHERE) {
-            test_sphere(ray, level, id, hit);
-        } else {
-            walk_mesh(ray, level, id, record.root, any, hit);
-        }
+    if ((casting && (record.flags & INSTANCE_NO_SHADOW) != 0u) || !within_reach(origin)) {
+        return;
+    }
+    LevelRay level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
+    if (SCENE_HAS_SPHERES && record.kind == KIND_SPHERE) {
+        test_sphere(ray, level, id, hit);
+    } else {
+        walk_mesh(ray, level, id, record.root, any, hit);
     }
 }
 
@@ -141,7 +152,7 @@ Hit traverse(Ray ray, bool any, bool casting) {
         return hit;
     }
     if (SCENE_IS_ONE_INSTANCE) {
-        test_instance(ray, 0u, any, casting, hit);
+        enter_instance(ray, 0u, any, casting, hit);
         return hit;
     }
     uvec2 stack[STACK_DEPTH];
@@ -149,10 +160,9 @@ Hit traverse(Ray ray, bool any, bool casting) {
     LevelRay world = prepare_ray(ray.origin, ray.direction);
     uvec2 group = uvec2(header.top_root, GROUP_ROOT);
     uvec2 instances = uvec2(0u);
-    bool walking = true;
-    do {
+    for (uint turn = 0u; turn < TURNS_MOST; turn++) {
         // Nodes until there is an instance.
-        do {
+        for (uint step_ = 0u; step_ < TURNS_MOST; step_++) {
             if (instances.y == 0u) {
                 if (group.y <= GROUP_EMPTY) {
                     height -= 1u;
@@ -168,13 +178,19 @@ Hit traverse(Ray ray, bool any, bool casting) {
                 group = uvec2(node.child_base, (hits & 0xff000000u) | (node.exponents_imask >> 24u));
                 instances = uvec2(node.primitive_base, hits & GROUP_EMPTY);
             }
-        } while (instances.y == 0u && (group.y > GROUP_EMPTY || height != 0u));
+            if (instances.y != 0u || (group.y <= GROUP_EMPTY && height == 0u)) {
+                break;
+            }
+        }
 
         if (instances.y != 0u) {
-            test_instance(ray, load_top_instance(take_primitive(instances)), any, casting, hit);
+            enter_instance(ray, take_primitive(instances), any, casting, hit);
         }
-        walking = (instances.y != 0u || group.y > GROUP_EMPTY || height != 0u) && !(any && hit.instance != INVALID);
-    } while (walking);
+        bool done = instances.y == 0u && group.y <= GROUP_EMPTY && height == 0u;
+        if (done || (any && hit.instance != INVALID)) {
+            break;
+        }
+    }
     return hit;
 }
 

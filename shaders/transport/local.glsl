@@ -94,8 +94,7 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
 
     if (!is_delta(material) && !hidden && header.light_count != 0u) {
         Frame frame = shading_frame(surface, material, wo);
-        uint index = 0u;
-        do {
+        for (uint index = 0u; index < header.light_count; index++) {
             Light light = load_light(index);
             LightSample lit = sample_light(light, surface.position);
             if (SCENE_HAS_SLIDES && light.slide != 0u) lit.radiance *= slide_factor(light, lit.wi);
@@ -110,8 +109,10 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
                     add_contribution(header.film_scale, path.slot, contribution, light_dither);
                 }
             }
-            index += 1u;
-        } while (index < header.light_count);
+            if (index + 1u == header.light_count) {
+                break;
+            }
+        }
     }
 }
 

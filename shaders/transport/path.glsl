@@ -160,9 +160,9 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uin
     const bool filtered = SCENE_SHADOWS == SHADOWS_FILTERED;
     // How far before the ray's origin its direction was drawn.
     float passed = 0.0;
-    if (filtered) {
-        passed = path.depth > 0u ? path.coverage : 0.0;
-        path.coverage = path.depth > 0u ? 0.0 : path.coverage;
+    if (filtered && path.depth > 0u) {
+        passed = path.coverage;
+        path.coverage = 0.0;
     }
     if (SCENE_HIDES_EMITTERS && path.depth == 0u && emission_material(material) != vec3(0.0)) {
         path.path_id = hash_combine(path.path_id, LOBE_THROUGH);

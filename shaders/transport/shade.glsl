@@ -8,8 +8,8 @@
 #include "shading/sampling.glsl"
 #include "shading/spectrum.glsl"
 #include "trace/surface.glsl"
-#include "transport/generate.glsl"
 #include "transport/faceted.glsl"
+#include "transport/generate.glsl"
 #include "transport/local.glsl"
 #include "transport/nested.glsl"
 #include "transport/path.glsl"
@@ -61,17 +61,17 @@ void shade(PathState incoming, Hit hit) {
         return;
     }
     uint flags = SCENE_HAS_FACETS && SCENE_INTEGRATOR == INTEGRATOR_LOCAL ? load_instance(hit.instance).flags : 0u;
-    // Tested after each turn, as every loop that is dear: devices in lockstep run a body once more to find that no lane is in it.
-    uint index = 0u;
-    do {
+    for (uint index = 0u; index < 3u; index++) {
         ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
         Material material_there = material;
         if (faceted(flags)) {
             material_there = material_at(-point.wo, point.hit, key, DIMENSION_LEAF, point.surface);
         }
         shade_local(path, key, point, material_there);
-        index += 1u;
-    } while (SCENE_HAS_FACETS && index < shading_points(flags));
+        if (!SCENE_HAS_FACETS || index + 1u >= shading_points(flags)) {
+            break;
+        }
+    }
     shade_through(path, surface, material);
     if (SCENE_INTEGRATOR == INTEGRATOR_WHITTED && path.depth < header.max_depth) {
         shade_whitted(path, surface, material);

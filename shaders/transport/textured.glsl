@@ -23,8 +23,7 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
     UvGradients gradients = gradients_at(surface, hit);
     Footprint footprint = cone_footprint(gradients, surface.normal_geometric, direction, surface.cone_width);
     uint count = material.texture_count < TEXTURES_MOST ? material.texture_count : TEXTURES_MOST;
-    uint index = 0u;
-    do {
+    for (uint index = 0u; index < TEXTURES_MOST; index++) {
         Texture texture_record = load_texture(material.first_texture + index);
         Detail detail = texture_detail(texture_record, footprint);
         vec2 uv = texture_uv(texture_record, surface.uv);
@@ -38,16 +37,17 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
         float height_v = 0.0;
         // To the right, to the left, above, below; other textures are read once, on the spot.
         uint taps = raises ? 4u : 1u;
-        uint tap = 0u;
-        do {
+        for (uint tap = 0u; tap < 4u; tap++) {
             float side = (tap & 1u) == 0u ? 1.0 : -1.0;
             vec2 reach = tap < 2u ? vec2(reach_u * side, 0.0) : vec2(0.0, reach_v * side);
             vec2 place = raises ? uv + reach : uv;
             value = channel_value(filter_texture(texture_record, place, detail), texture_record.channel);
             height_u = tap < 2u ? height_u + value.x * side : height_u;
             height_v = tap < 2u ? height_v : height_v + value.x * side;
-            tap += 1u;
-        } while (tap < taps);
+            if (tap + 1u == taps) {
+                break;
+            }
+        }
         if (raises) {
             UvGradients own = texture_gradients(texture_record, gradients);
             float rise_u = div(height_u, 2.0 * reach_u) * texture_record.scale;
@@ -59,8 +59,10 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
         } else {
             material = apply_parameter(material, texture_record.parameter, value, texture_record.scale);
         }
-        index += 1u;
-    } while (index < count);
+        if (index + 1u == count) {
+            break;
+        }
+    }
     return material;
 }
 
@@ -72,28 +74,27 @@ Material material_at(vec3 direction, Hit hit, SampleKey key, uint dimension, ino
     Material material = load_material(surface.material);
     float u = HAS_MODEL(MODEL_BLEND) && material.model == MODEL_BLEND ? sample_1d(key, dimension) : 0.0;
     float covered = 1.0;
-    uint level = 0u;
-    bool blends = false;
-    do {
+    for (uint level = 0u; level < MAX_LEAVES; level++) {
         material.color *= surface.color;
         material = apply_textures(material, direction, hit, surface);
-        level += 1u;
         // Where a blend has holes, what it blends has them too.
-        if (HAS_MODEL(MODEL_BLEND)) material.k_t = covered < 1.0 ? 1.0 - covered * (1.0 - material.k_t) : material.k_t;
-        // Bake lets no blend be deeper.
-        blends = HAS_MODEL(MODEL_BLEND) && material.model == MODEL_BLEND && level < MAX_LEAVES;
-        if (blends) {
-            covered = 1.0 - material.k_t;
-            bool by_side = (material.flags & MATERIAL_BY_SIDE) != 0u;
-            float weight = clamp_(material.extra, 0.0, 1.0);
-            bool second = by_side ? dot3(surface.normal_geometric, direction) > 0.0 : u < weight;
-            // What is left of u is as random again.
-            float rest = second ? div(u, weight) : div(u - weight, 1.0 - weight);
-            u = by_side ? u : rest;
-            surface.material = second ? material.table + 1u : material.table;
-            material = load_material(surface.material);
+        if (HAS_MODEL(MODEL_BLEND) && covered < 1.0) {
+            material.k_t = 1.0 - covered * (1.0 - material.k_t);
         }
-    } while (blends);
+        // Bake lets no blend be deeper.
+        if (!HAS_MODEL(MODEL_BLEND) || material.model != MODEL_BLEND || level + 1u == MAX_LEAVES) {
+            break;
+        }
+        covered = 1.0 - material.k_t;
+        bool by_side = (material.flags & MATERIAL_BY_SIDE) != 0u;
+        float weight = clamp_(material.extra, 0.0, 1.0);
+        bool second = by_side ? dot3(surface.normal_geometric, direction) > 0.0 : u < weight;
+        // What is left of u is as random again.
+        float rest = second ? div(u, weight) : div(u - weight, 1.0 - weight);
+        u = by_side ? u : rest;
+        surface.material = second ? material.table + 1u : material.table;
+        material = load_material(surface.material);
+    }
     return material;
 }
 

@@ -26,26 +26,6 @@ const COS_GRAZING: f64 = 1.0e-4;
 /// Azimuths over which an anisotropic lobe is averaged.
 const AZIMUTHS: u32 = 4;
 
-/// A scene of nothing but `tables`.
-fn table_scene<'a>(header: &'a SceneHeader, tables: &'a [f32]) -> SceneView<'a> {
-    SceneView {
-        header,
-        nodes: &[],
-        triangles: &[],
-        instances: &[],
-        top_instances: &[],
-        faces: &[],
-        vertices: &[],
-        materials: &[],
-        lights: &[],
-        emitters: &[],
-        environments: &[],
-        textures: &[],
-        texels: &[],
-        tables,
-    }
-}
-
 /// The mean of `value` over views of each knot's cosine and the lattice's points.
 fn tabulate(anisotropic: bool, value: impl Fn(Vec3, Vec2) -> f64 + Sync) -> Vec<f64> {
     let (count, step) = LATTICE;
@@ -98,7 +78,7 @@ fn cosine_mean(f: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// The Gaussian's c, so that the integral of D cos over the hemisphere is 1.
-fn gaussian_scale(alpha: f32) -> f64 {
+pub fn gaussian_scale(alpha: f32) -> f64 {
     const STEPS: u32 = 4096;
     let alpha = f64::from(alpha);
     // e^-36 and less is nothing.
@@ -151,7 +131,7 @@ pub fn conductor_table(material: &mut Material, tables: &mut Vec<f32>) {
     let constants = header.clone();
     let kind = (material.flags >> DISTRIBUTION_SHIFT) & 3;
     let table = tabulate(material.m0 != material.m0_v, |wo, u| {
-        let scene = table_scene(&scene_header, &constants);
+        let scene = SceneView::of_tables(&scene_header, &constants);
         let wi = reflect_about(wo, sample_facet(kind, white.m0, white.m0_v, wo, u));
         let pdf = pdf_rough_conductor(&scene, &white, wo, wi);
         if pdf <= 0.0 {
@@ -179,7 +159,7 @@ pub fn kelemen_table(material: &mut Material, tables: &mut Vec<f32>) {
         if cos <= COS_MIN || pdf <= 0.0 {
             return 0.0;
         }
-        f64::from(eval_kelemen(&table_scene(&scene_header, &zeros), &specular, wo, wi).x) / pdf
+        f64::from(eval_kelemen(&SceneView::of_tables(&scene_header, &zeros), &specular, wo, wi).x) / pdf
     });
     header[2] = mean(&table) as f32;
     finish(material, &header, &table, tables);

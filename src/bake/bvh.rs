@@ -101,25 +101,35 @@ impl Tree {
         self.nodes.len()
     }
 
-    /// A tree of good quality that fits the traversal stack. `boxes`: finite, at least one.
-    pub fn build(boxes: &[Bounds], leaf: u32) -> Self {
-        let tree = Self::by_surface_area(boxes, leaf);
-        if tree.stack_depth() <= STACK_SIZE { tree } else { Self::median_split(boxes, leaf) }
+    /// A tree of good quality that fits the traversal stack, over `count` primitives, one at least. `box_of`: the box of each,
+    /// finite; asked for again rather than kept.
+    pub fn build(count: usize, box_of: impl Fn(u32) -> Bounds + Sync, leaf: u32) -> Self {
+        let tree = Self::by_surface_area(count, &box_of, leaf);
+        if tree.stack_depth() <= STACK_SIZE {
+            return tree;
+        }
+        let boxes: Vec<Bounds> = (0..count as u32).map(box_of).collect();
+        Self::median_split(&boxes, leaf)
     }
 
     /// A tree of good quality, of any depth.
-    fn by_surface_area(boxes: &[Bounds], leaf: u32) -> Self {
-        let boxes: Vec<Aabb> = boxes.iter().map(|b| Aabb::new(b.min.into(), b.max.into())).collect();
-        let preset = BvhBuildParams::medium_build();
+    fn by_surface_area(count: usize, box_of: impl Fn(u32) -> Bounds + Sync, leaf: u32) -> Self {
         let start = Instant::now();
+        let boxed = |primitive| {
+            let Bounds { min, max } = box_of(primitive);
+            Aabb::new(min.into(), max.into())
+        };
+        let boxes: Vec<Aabb> = (0..count as u32).into_par_iter().map(boxed).collect();
+        let preset = BvhBuildParams::medium_build();
         // The steps of obvhs's `build_cwbvh` up to the binary tree.
-        let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
+        let mut binary = PlocBuilder::with_capacity(count).build(
             preset.ploc_search_distance,
             &boxes,
-            (0..boxes.len() as u32).collect(),
+            (0..count as u32).collect(),
             preset.sort_precision,
             preset.search_depth_threshold,
         );
+        drop(boxes);
         ReinsertionOptimizer::default().run(&mut binary, preset.reinsertion_batch_ratio, None);
         let binary_s = start.elapsed().as_secs_f64();
         let (nodes, order) = widen(&binary, leaf);
@@ -189,21 +199,25 @@ impl Tree {
 
     /// The nodes as the traversal reads them. Every quantised child box contains the boxes of all primitives below it.
     /// `node_base`, `primitive_base`: where the tree's nodes and its order begin in the scene's arrays.
-    pub fn pack(&self, boxes: &[Bounds], node_base: u32, primitive_base: u32) -> Vec<Node> {
-        let mut child_bounds = vec![[Bounds::EMPTY; 8]; self.nodes.len()];
+    pub fn pack(&self, box_of: impl Fn(u32) -> Bounds + Sync, node_base: u32, primitive_base: u32) -> Vec<Node> {
+        let leaves = |node: &TreeNode| {
+            std::array::from_fn(|slot| match node.child(slot) {
+                Child::Empty | Child::Inner(_) => Bounds::EMPTY,
+                Child::Leaf(first, count) => {
+                    let inside = &self.order[first as usize..(first + count) as usize];
+                    inside.iter().fold(Bounds::EMPTY, |b, &p| b.union(box_of(p)))
+                }
+            })
+        };
+        let mut child_bounds: Vec<[Bounds; 8]> = self.nodes.par_iter().map(leaves).collect();
         let mut bounds = vec![Bounds::EMPTY; self.nodes.len()];
         for (index, node) in self.nodes.iter().enumerate().rev() {
             for (slot, child) in node.children().enumerate() {
-                let inside = match child {
-                    Child::Empty => continue,
-                    Child::Inner(child) => bounds[child as usize],
-                    Child::Leaf(first, count) => self.order[first as usize..(first + count) as usize]
-                        .iter()
-                        .fold(Bounds::EMPTY, |b, &p| b.union(boxes[p as usize])),
-                };
-                child_bounds[index][slot] = inside;
-                bounds[index] = bounds[index].union(inside);
+                if let Child::Inner(child) = child {
+                    child_bounds[index][slot] = bounds[child as usize];
+                }
             }
+            bounds[index] = child_bounds[index].iter().fold(Bounds::EMPTY, |b, &c| b.union(c));
         }
         let pack_one = |(index, node): (usize, &TreeNode)| {
             pack_node(node, &bounds[index], &child_bounds[index], node_base, primitive_base)
@@ -338,9 +352,10 @@ mod tests {
     #[test]
     fn a_tree_too_deep_for_the_stack_is_shallow_after_a_median_split() {
         let boxes = cascade(800, 0.9);
-        let deep = Tree::by_surface_area(&boxes, MESH_LEAF);
+        let box_of = |index: u32| boxes[index as usize];
+        let deep = Tree::by_surface_area(boxes.len(), box_of, MESH_LEAF);
         assert!(deep.stack_depth() > STACK_SIZE, "{}", deep.stack_depth());
-        let flat = Tree::build(&boxes, MESH_LEAF);
+        let flat = Tree::build(boxes.len(), box_of, MESH_LEAF);
         assert!(flat.stack_depth() <= 5, "{}", flat.stack_depth());
         let mut order = flat.order.clone();
         order.sort_unstable();

@@ -1,9 +1,10 @@
 //! Meshes: faces, vertices, traversal triangles and their hierarchy.
 
 use super::bvh::{Bounds, MESH_LEAF, Tree};
-use crate::layout::{Face, Triangle, Vertex};
+use crate::layout::{Face, Node, Triangle, Vertex};
 use crate::scene::{MaterialId, Mesh};
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 use std::time::Instant;
 
 /// Coordinates below this (2^-60 of the mesh's size) become 0, as the ray's do (`trace::ray`): no difference between the
@@ -18,15 +19,16 @@ pub struct BakedMesh {
     pub vertices: Vec<Vertex>,
     /// In traversal order.
     pub triangles: Vec<Triangle>,
-    /// Boxes of the triangles that were kept, as the tree numbers them.
-    pub boxes: Vec<Bounds>,
+    /// Shape of the hierarchy, and its nodes as if they and the triangles were alone.
     pub tree: Tree,
+    pub nodes: Vec<Node>,
     pub bounds: Option<Bounds>,
     /// Coordinates are stored divided by this power of two, so that the largest is in 1..2 and the strict arithmetic of
     /// `trace` works far from overflow and underflow at any scale. Instances multiply it back, exactly.
     pub unit: f64,
     pub warning: Option<String>,
-    /// Seconds that all but the hierarchy took.
+    /// Seconds that the nodes took, and all but the hierarchy.
+    pub pack_s: f64,
     pub geometry_s: f64,
 }
 
@@ -48,43 +50,70 @@ fn unit_of(largest: f32) -> f64 {
 pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId) -> BakedMesh {
     let start = Instant::now();
     let finite = |corners: &[u32; 3]| corners.iter().all(|&i| mesh.positions[i as usize].is_finite());
-    let used = mesh.triangles.iter().filter(|corners| finite(corners)).flatten();
-    let largest = used.fold(0.0f32, |largest, &i| largest.max(mesh.positions[i as usize].abs().max_element()));
+    let used = mesh.triangles.par_iter().filter(|corners| finite(corners)).flatten_iter();
+    let largest = used.map(|&i| mesh.positions[i as usize].abs().max_element()).reduce(|| 0.0, f32::max);
     let unit = if largest > 0.0 { unit_of(largest) } else { 1.0 };
     let mut baked = BakedMesh { unit, ..BakedMesh::default() };
-    let positions: Vec<Vec3> = mesh.positions.iter().map(|&p| scaled(p, unit)).collect();
-    let mut builder = VertexBuilder::new(mesh, &positions);
-    let (mut not_finite, mut flat) = (0u64, 0u64);
-    let mut kept = Vec::new();
-    for (primitive, &corners) in mesh.triangles.iter().enumerate() {
-        let [v0, v1, v2] = corners.map(|i| positions[i as usize]);
-        let normal = face_normal(v0, v1, v2);
-        let material = mesh.face_materials.get(primitive).copied().unwrap_or(default_material).0;
-        let [i0, i1, i2] = builder.face(corners, normal.unwrap_or(Vec3::Z));
-        baked.faces.push(Face { i0, i1, i2, material });
-        if !finite(&corners) {
-            not_finite += 1;
-        } else if normal.is_none() {
-            flat += 1;
-        } else {
-            baked.boxes.push(Bounds::EMPTY.with(v0).with(v1).with(v2));
-            kept.push(Triangle { v0, v1, v2, primitive: primitive as u32, ..Triangle::default() });
-        }
-    }
-    baked.vertices = builder.vertices;
-    if not_finite + flat > 0 {
+    let positions: Vec<Vec3> = mesh.positions.par_iter().map(|&p| scaled(p, unit)).collect();
+    let corners = |primitive: u32| mesh.triangles[primitive as usize].map(|i| positions[i as usize]);
+    let states: Vec<State> = (0..mesh.triangles.len() as u32)
+        .into_par_iter()
+        .map(|primitive| match face_normal(corners(primitive)) {
+            _ if !finite(&mesh.triangles[primitive as usize]) => State::NotFinite,
+            None => State::Flat,
+            Some(_) => State::Kept,
+        })
+        .collect();
+    let of = |state| (0u32..).zip(&states).filter(move |(_, found)| **found == state).map(|(primitive, _)| primitive);
+    let kept: Vec<u32> = of(State::Kept).collect();
+    if kept.len() < states.len() {
         baked.warning = Some(format!(
-            "mesh \"{}\": dropped {not_finite} triangles with coordinates that are not finite and {flat} without area",
-            mesh.name
+            "mesh \"{}\": dropped {} triangles with coordinates that are not finite and {} without area",
+            mesh.name,
+            of(State::NotFinite).count(),
+            of(State::Flat).count()
         ));
     }
-    baked.geometry_s = start.elapsed().as_secs_f64();
+    let before = start.elapsed().as_secs_f64();
+    // The hierarchy before all that stays: building it takes the most memory.
     if !kept.is_empty() {
-        baked.bounds = Some(baked.boxes.iter().fold(Bounds::EMPTY, |b, &c| b.union(c)));
-        baked.tree = Tree::build(&baked.boxes, MESH_LEAF);
-        baked.triangles = baked.tree.order.iter().map(|&i| kept[i as usize]).collect();
+        let box_of = |index: u32| bounds_of(corners(kept[index as usize]));
+        baked.tree = Tree::build(kept.len(), box_of, MESH_LEAF);
+        let start = Instant::now();
+        baked.nodes = baked.tree.pack(box_of, 0, 0);
+        baked.pack_s = start.elapsed().as_secs_f64();
     }
+    let start = Instant::now();
+    let triangle = |&index: &u32| {
+        let primitive = kept[index as usize];
+        let [v0, v1, v2] = corners(primitive);
+        Triangle { v0, v1, v2, primitive, ..Triangle::default() }
+    };
+    baked.triangles = baked.tree.order.par_iter().map(triangle).collect();
+    let boxes = kept.par_iter().map(|&primitive| bounds_of(corners(primitive)));
+    baked.bounds = boxes.reduce_with(Bounds::union);
+    let mut builder = VertexBuilder::new(mesh, &positions);
+    baked.faces.reserve_exact(mesh.triangles.len());
+    for (primitive, &corners) in mesh.triangles.iter().enumerate() {
+        let material = mesh.face_materials.get(primitive).copied().unwrap_or(default_material).0;
+        let [i0, i1, i2] = builder.face(corners);
+        baked.faces.push(Face { i0, i1, i2, material });
+    }
+    baked.vertices = builder.vertices;
+    baked.geometry_s = before + start.elapsed().as_secs_f64();
     baked
+}
+
+/// What becomes of a triangle.
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    Kept,
+    NotFinite,
+    Flat,
+}
+
+fn bounds_of([v0, v1, v2]: [Vec3; 3]) -> Bounds {
+    Bounds::EMPTY.with(v0).with(v1).with(v2)
 }
 
 /// A position in the mesh's unit; 0 where it is not finite (such triangles are dropped).
@@ -97,7 +126,7 @@ fn scaled(p: Vec3, unit: f64) -> Vec3 {
 }
 
 /// The unit normal of the counter-clockwise side; none if the triangle has no area.
-fn face_normal(v0: Vec3, v1: Vec3, v2: Vec3) -> Option<Vec3> {
+fn face_normal([v0, v1, v2]: [Vec3; 3]) -> Option<Vec3> {
     let (e1, e2) = ((v1.as_dvec3() - v0.as_dvec3()), (v2.as_dvec3() - v0.as_dvec3()));
     unit(DVec3::new(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x))
 }
@@ -123,11 +152,16 @@ impl<'a> VertexBuilder<'a> {
         Self { mesh, positions, shared: vec![None; positions.len()], vertices: Vec::new() }
     }
 
-    fn face(&mut self, corners: [u32; 3], face_normal: Vec3) -> [u32; 3] {
+    fn face(&mut self, corners: [u32; 3]) -> [u32; 3] {
+        let mut own = None;
         corners.map(|corner| {
             let normal = self.mesh.normals.get(corner as usize).and_then(|n| unit(n.as_dvec3()));
             match (normal, self.shared[corner as usize]) {
-                (None, _) => self.push(corner, face_normal),
+                (None, _) => {
+                    let of_face = || face_normal(corners.map(|i| self.positions[i as usize])).unwrap_or(Vec3::Z);
+                    let normal = *own.get_or_insert_with(of_face);
+                    self.push(corner, normal)
+                }
                 (Some(_), Some(index)) => index,
                 (Some(normal), None) => {
                     let index = self.push(corner, normal);

@@ -1,12 +1,11 @@
 //! Measured tables in the layout of `shading/measured`.
 
-use crate::layout::Material;
-use crate::scene::Table;
+use crate::layout::{MODEL_MEASURED, Material};
 use crate::shading::measured::{MEASURED_D, MEASURED_H, MEASURED_P, measured_edge};
 
 /// Appends a table: first the steps of the integral over theta_h that samples are drawn from, then its three planes.
-pub fn measured_table(table: &Table, material: &mut Material, tables: &mut Vec<f32>) {
-    let Table::Merl { values } = table;
+pub fn measured_table(values: &[f32], material: &mut Material, tables: &mut Vec<f32>) {
+    material.model = MODEL_MEASURED;
     let plane = (MEASURED_H * MEASURED_D * MEASURED_P) as usize;
     debug_assert_eq!(values.len(), 3 * plane);
     material.table = tables.len() as u32;

@@ -19,9 +19,11 @@ mod mip;
 mod model;
 mod scene;
 pub mod srgb;
+mod tabulated;
 mod texture;
 mod wide;
 
+pub use albedo::gaussian_scale;
 pub use data::{BakeTimes, HeapPiece, SceneData};
 pub use scene::bake;
 

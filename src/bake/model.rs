@@ -3,6 +3,7 @@
 use super::BakeError;
 use super::albedo::{conductor_table, constant_table, diffuse_reflectance, kelemen_table, plastic_table};
 use super::measured::measured_table;
+use super::tabulated::tabulated_table;
 use crate::layout::*;
 use crate::scene::{
     self, Distribution, Fresnel, Lobe, Masking, Model, Principled, Table, Transparency, WardNormalisation,
@@ -158,10 +159,10 @@ fn bake_model(
             plastic_table(baked, tables);
         }
         Model::Principled(principled) => bake_principled(principled, baked, tables),
-        Model::Measured { table } => {
-            baked.model = MODEL_MEASURED;
-            measured_table(&measured[table.0 as usize], baked, tables);
-        }
+        Model::Measured { table } => match &measured[table.0 as usize] {
+            Table::Merl { values } => measured_table(values, baked, tables),
+            Table::Directional(table) => tabulated_table(table, baked, tables),
+        },
         Model::Null => {
             baked.model = MODEL_NULL;
             baked.flags |= MATERIAL_TRANSMISSIVE;

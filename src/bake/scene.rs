@@ -13,7 +13,7 @@ use super::texture::{bake_textures, bind_textures};
 use super::{BakeError, SceneData};
 use crate::layout::{
     Camera, INSTANCE_FLAT, INSTANCE_GOURAUD, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH,
-    INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH, KIND_SPHERE, SAMPLER_INDEPENDENT, SAMPLER_SOBOL,
+    INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH, KIND_SPHERE, Node, SAMPLER_INDEPENDENT, SAMPLER_SOBOL,
     SAMPLER_STRATIFIED, SHADOWS_FILTERED, SHADOWS_OFF, SHADOWS_OPAQUE, STACK_SIZE, SceneHeader,
 };
 use crate::scene::{
@@ -37,14 +37,15 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     let default_material = bake_materials(scene, &mut data)?;
     data.lights = scene.lights.iter().map(|light| bake_light(light, &mut data.tables)).collect();
     data.times.materials_s = start.elapsed().as_secs_f64();
-    let meshes = bake_meshes(scene, default_material);
+    let mut meshes = bake_meshes(scene, default_material);
     for mesh in meshes.iter().flatten() {
         data.times.geometry_s += mesh.geometry_s;
         data.times.binary_s += mesh.tree.seconds[0];
         data.times.wide_s += mesh.tree.seconds[1];
+        data.times.pack_s += mesh.pack_s;
     }
     let placing = Instant::now();
-    let mut parts = place_objects(scene, &meshes, default_material, &mut data)?;
+    let mut parts = place_objects(scene, &mut meshes, default_material, &mut data)?;
     parts.meshes = meshes;
     bake_light_sources(scene, &parts, &mut data)?;
     data.times.top_s = placing.elapsed().as_secs_f64();
@@ -172,25 +173,25 @@ struct Parts {
 /// Makes the instances, and the faces and vertices of the meshes they show.
 fn place_objects(
     scene: &Scene,
-    meshes: &[Option<BakedMesh>],
+    meshes: &mut [Option<BakedMesh>],
     default_material: MaterialId,
     data: &mut SceneData,
 ) -> Result<Parts, BakeError> {
+    let faces = meshes.iter().flatten().map(|mesh| mesh.faces.len()).sum();
+    let vertices = meshes.iter().flatten().map(|mesh| mesh.vertices.len()).sum();
+    check_count("vertices", vertices)?;
+    check_count("faces", faces)?;
     let mut first_face = vec![0u32; meshes.len()];
-    for (id, mesh) in meshes.iter().enumerate() {
+    for (id, mesh) in meshes.iter_mut().enumerate() {
         let Some(mesh) = mesh else { continue };
         data.warnings.extend(mesh.warning.clone());
-        check_count("vertices", data.vertices.len() + mesh.vertices.len())?;
-        check_count("faces", data.faces.len() + mesh.faces.len())?;
         first_face[id] = data.faces.len() as u32;
         let base = data.vertices.len() as u32;
-        data.faces.extend(mesh.faces.iter().map(|&face| crate::layout::Face {
-            i0: base + face.i0,
-            i1: base + face.i1,
-            i2: base + face.i2,
-            material: face.material,
-        }));
-        data.vertices.extend_from_slice(&mesh.vertices);
+        for face in &mut mesh.faces {
+            (face.i0, face.i1, face.i2) = (base + face.i0, base + face.i1, base + face.i2);
+        }
+        append(&mut data.faces, std::mem::take(&mut mesh.faces), faces);
+        append(&mut data.vertices, std::mem::take(&mut mesh.vertices), vertices);
     }
     let mut parts = Parts { meshes: Vec::new(), shown: Vec::new(), growth: 1.0 };
     for (index, object) in scene.objects.iter().enumerate() {
@@ -279,8 +280,18 @@ fn instance_shadow(scene: &Scene, object: &Object) -> (bool, Option<String>) {
     (casts, warning)
 }
 
+/// Appends `more` to `all`, which is to have `total` items in the end. The only part of a scene moves without a copy.
+fn append<T>(all: &mut Vec<T>, mut more: Vec<T>, total: usize) {
+    if all.is_empty() && more.len() == total {
+        *all = more;
+        return;
+    }
+    all.reserve_exact(total - all.len());
+    all.append(&mut more);
+}
+
 /// Builds the top level and lays all hierarchies out in one array.
-fn build_hierarchy(parts: Parts, data: &mut SceneData) -> Result<(), BakeError> {
+fn build_hierarchy(mut parts: Parts, data: &mut SceneData) -> Result<(), BakeError> {
     data.header.top_margin = top_margin(parts.growth);
     data.header.top_root = INVALID;
     if parts.shown.is_empty() {
@@ -288,7 +299,8 @@ fn build_hierarchy(parts: Parts, data: &mut SceneData) -> Result<(), BakeError> 
     }
     let boxes: Vec<Bounds> = parts.shown.iter().map(|&(_, world)| world).collect();
     let start = Instant::now();
-    let top = Tree::build(&boxes, TOP_LEAF);
+    let box_of = |index: u32| boxes[index as usize];
+    let top = Tree::build(boxes.len(), box_of, TOP_LEAF);
     let meshes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.stack_depth());
     data.stack_depth = meshes.fold(top.stack_depth(), u32::max);
     if data.stack_depth > STACK_SIZE {
@@ -302,24 +314,28 @@ fn build_hierarchy(parts: Parts, data: &mut SceneData) -> Result<(), BakeError> 
     let nodes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.node_count()).sum::<usize>() + top.node_count();
     check_count("nodes", nodes)?;
     data.nodes.reserve_exact(nodes);
-    data.triangles.reserve_exact(triangles);
     data.header.top_root = 0;
-    data.nodes.extend(top.pack(&boxes, 0, 0));
+    data.nodes.extend(top.pack(box_of, 0, 0));
     data.top_instances = top.order.clone();
     let mut roots = vec![INVALID; parts.meshes.len()];
-    for (id, mesh) in parts.meshes.iter().enumerate() {
-        let Some(mesh) = mesh.as_ref().filter(|mesh| !mesh.is_empty()) else {
+    for (id, mesh) in parts.meshes.iter_mut().enumerate() {
+        let Some(mesh) = mesh.as_mut().filter(|mesh| !mesh.is_empty()) else {
             continue;
         };
-        roots[id] = data.nodes.len() as u32;
-        let packed = mesh.tree.pack(&mesh.boxes, data.nodes.len() as u32, data.triangles.len() as u32);
-        data.nodes.extend(packed);
-        data.triangles.extend_from_slice(&mesh.triangles);
+        let (first_node, first_triangle) = (data.nodes.len() as u32, data.triangles.len() as u32);
+        roots[id] = first_node;
+        let moved = |node: Node| Node {
+            child_base: node.child_base + first_node,
+            primitive_base: node.primitive_base + first_triangle,
+            ..node
+        };
+        data.nodes.extend(std::mem::take(&mut mesh.nodes).into_iter().map(moved));
+        append(&mut data.triangles, std::mem::take(&mut mesh.triangles), triangles);
     }
     for (instance, (mesh, _)) in data.instances.iter_mut().zip(&parts.shown) {
         instance.root = mesh.map_or(INVALID, |id| roots[id]);
     }
-    data.times.pack_s = start.elapsed().as_secs_f64();
+    data.times.pack_s += start.elapsed().as_secs_f64();
     Ok(())
 }
 

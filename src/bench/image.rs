@@ -2,6 +2,7 @@
 
 use super::report::{ImageReport, RunsOn};
 use super::run::{Plan, take_turns};
+use super::stats::Runs;
 use super::tracer::Timing;
 use crate::film::{Film, Rect};
 use crate::render::{Counters, Job, RenderError, Renderer, Watch};
@@ -17,31 +18,37 @@ pub fn measure(
     plan: Plan,
 ) -> Result<ImageReport, RenderError> {
     let mut films = vec![film.clone(); renderers.len()];
+    let mut shares = vec![Vec::new(); renderers.len()];
     let times = take_turns(plan, renderers.len(), |at| {
         films[at] = film.clone();
-        render(renderers[at].1.as_mut(), &mut films[at])
+        let (timing, kernels) = render(renderers[at].1.as_mut(), &mut films[at])?;
+        shares[at].extend(timing.device.map(|_| kernels / timing.wall));
+        Ok(timing)
     })?;
     let mut results = Vec::new();
-    for (((on, _), (wall_s, device_s)), other) in renderers.iter().zip(times).zip(&films) {
+    for ((((on, _), (wall_s, device_s)), other), share) in renderers.iter().zip(times).zip(&films).zip(shares) {
         let differs = |(a, b): (&[i64; 4], &[i64; 4])| a != b;
         let differ = films[0].sums().iter().zip(other.sums()).filter(|&pair| differs(pair)).count() as u64;
         let first = films[0].sums().iter().zip(other.sums()).position(differs);
         let width = film.crop().width as usize;
         let first = first.map(|at| format!("pixel {},{}", at % width, at / width));
-        results.push(RunsOn { on: on.clone(), wall_s, device_s, differ, first, dispatch: None });
+        let kernel_share = (!share.is_empty()).then(|| Runs(share.into_iter().skip(plan.warmup).collect()));
+        results.push(RunsOn { on: on.clone(), wall_s, device_s, differ, first, dispatch: None, kernel_share });
     }
     let film_hash = films.first().map_or_else(String::new, |film| film.hash().to_string());
     Ok(ImageReport { integrator: integrator.to_owned(), samples: film.crop().area() as u64, film_hash, results })
 }
 
-fn render(renderer: &mut dyn Renderer, film: &mut Film) -> Result<Timing, RenderError> {
+/// The time, and how many seconds of it were in kernels that trace or shade.
+fn render(renderer: &mut dyn Renderer, film: &mut Film) -> Result<(Timing, f64), RenderError> {
     let job = Job { crop: film.crop(), samples: 0..1 };
     let abort = AtomicBool::new(false);
     let watch = Watch { abort: &abort, advance: &|_| {} };
     let start = Instant::now();
     let Counters { extend_s, shade_s, shadow_s, other_s, .. } = renderer.accumulate(&job, film, &watch)?;
-    let device = extend_s + shade_s + shadow_s + other_s;
-    Ok(Timing { wall: start.elapsed().as_secs_f64(), device: (device > 0.0).then_some(device) })
+    let kernels = extend_s + shade_s + shadow_s;
+    let device = kernels + other_s;
+    Ok((Timing { wall: start.elapsed().as_secs_f64(), device: (device > 0.0).then_some(device) }, kernels))
 }
 
 /// The frame nearest to `width` x `height` in shape that has about `rays` pixels.

@@ -102,6 +102,9 @@ pub struct RunsOn {
     /// Rays of a dispatch.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dispatch: Option<u32>,
+    /// Of an image: the part of each run's time on the host's clock that was in kernels that trace or shade, by timestamps.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kernel_share: Option<Runs>,
 }
 
 impl RunsOn {

@@ -47,7 +47,8 @@ pub fn measure(set: &RaySet, tracers: &mut [(String, Tracer)], plan: Plan) -> Re
     let mut results = Vec::new();
     for ((on, tracer), (wall_s, device_s)) in tracers.iter_mut().zip(times) {
         let (differ, first) = compare(set, &tracer.hits()?);
-        results.push(RunsOn { on: on.clone(), wall_s, device_s, differ, first, dispatch: tracer.dispatch_rays() });
+        let dispatch = tracer.dispatch_rays();
+        results.push(RunsOn { on: on.clone(), wall_s, device_s, differ, first, dispatch, kernel_share: None });
     }
     Ok(RayReport { kind: set.kind, rays: set.rays.len() as u64, hits: set.hit_count() as u64, results })
 }

@@ -65,6 +65,9 @@ impl Table<'_> {
                 let wall = Rate::of(amount as f64, &result.wall_s);
                 let _ = write!(row, "; wall {} ({})", mega(wall.median), range(&wall));
             }
+            if let Some(share) = &result.kernel_share {
+                let _ = write!(row, "; {:.0} % in traversal and shading", 100.0 * share.median());
+            }
             let before = self.baseline.and_then(|baseline| baseline.rate(&report.scene, what, &result.on));
             if let Some(before) = before.filter(|before| *before > 0.0) {
                 let _ = write!(row, "; x{:.3} of the baseline", rate.median / before);
@@ -211,7 +214,7 @@ fn grouped(number: u64) -> String {
 mod tests {
     use super::*;
     use crate::bench::rays::RayKind;
-    use crate::bench::report::{RayReport, SCHEMA};
+    use crate::bench::report::{ImageReport, RayReport, SCHEMA};
     use crate::bench::stats::Runs;
 
     fn runs_on(on: &str, wall: f64, device: Option<f64>, differ: u64) -> RunsOn {
@@ -223,6 +226,7 @@ mod tests {
             differ,
             first: (differ > 0).then(|| "ray 7".to_owned()),
             dispatch: None,
+            kernel_share: None,
         }
     }
 
@@ -254,6 +258,17 @@ mod tests {
         let vulkan = "    vulkan  median 5.00 Mrays/s (4.55-5.56, n = 3, 1 warm-up); wall 4.00 (3.64-4.44)\n";
         assert!(text.contains(vulkan), "{text}");
         assert!(text.contains("  hits: equal\n"), "{text}");
+    }
+
+    #[test]
+    fn an_image_s_row_says_how_much_of_the_time_was_in_the_kernels_that_matter() {
+        let mut result = runs_on("vulkan", 0.25, Some(0.2), 0);
+        result.kernel_share = Some(Runs(vec![0.7, 0.912, 0.95]));
+        let mut report = report(Vec::new());
+        let (integrator, film_hash) = ("path".to_owned(), String::new());
+        report.images = vec![ImageReport { integrator, samples: 1_000_000, film_hash, results: vec![result] }];
+        let text = Table { plan: PLAN, baseline: None }.scene(&report);
+        assert!(text.contains("wall 4.00 (3.64-4.44); 91 % in traversal and shading\n"), "{text}");
     }
 
     #[test]

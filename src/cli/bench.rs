@@ -208,6 +208,7 @@ impl BenchArgs {
             seed: self.seed,
             integrator: None,
             max_depth: None,
+            panel: None,
             set: self.set.clone(),
         };
         let mut scene = flags.load(path)?;

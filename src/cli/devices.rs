@@ -16,7 +16,7 @@ use std::sync::Arc;
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "\
 Examples:
-  gonio devices                                           a table; the index or name goes after --device
+  gonio devices                                           a table; what is under DEVICE goes after --device
   gonio devices --json                                    everything that is known
   VK_DRIVER_FILES=/path/to/icd.json gonio devices         of one driver only")]
 pub struct DevicesArgs {
@@ -169,7 +169,7 @@ fn table(answer: &Answer, threads: usize) -> String {
         ]);
     }
     let unit = if threads == 1 { "thread" } else { "threads" };
-    rows.push(["-", "", "cpu", "-", "-", "yes", "yes"].map(str::to_owned));
+    rows.push(["cpu", "", "cpu", "-", "-", "yes", "yes"].map(str::to_owned));
     if let Some(row) = rows.last_mut() {
         row[1] = format!("the CPU backend ({threads} {unit})");
     }
@@ -220,7 +220,7 @@ mod tests {
 DEVICE  NAME                         KIND      VULKAN  DRIVER  USABLE  EXACT
 0       Soft                         cpu       1.3.0   lava 2  yes     no (div, 1.0 2.0)
 1       Old Card                     discrete  1.1.0           no      -
--       the CPU backend (2 threads)  cpu       -       -       yes     yes
+cpu     the CPU backend (2 threads)  cpu       -       -       yes     yes
 device 0 is not exact: div(1.0 (0x3f800000), 2.0 (0x40000000)): cpu 0.5 (0x3f000000), device 0.0 (0x00000000)
 device 1 cannot be used: Vulkan 1.1.0 only
 ";

@@ -3,43 +3,53 @@
 use super::Usage;
 use super::interrupt::Interrupt;
 use super::setup::{BackendFlags, SceneFlags, bake_scene, film_of};
-use crate::film::display::encode;
-use crate::film::{FilmError, OutputFile, Rect};
-use crate::plot::lecture::{Panels, caption, formula, panels, plot};
-use crate::plot::page::{Entry, page};
-use crate::plot::panels::{Picture, labelled, side_by_side};
-use crate::plot::{Format, render};
+use super::sheet::{self, Sheet};
+use crate::film::{Film, FilmError, OutputFile, Rect};
+use crate::plot::lecture::{caption, numbered, plots};
+use crate::plot::page::{Entry, Part, page};
+use crate::plot::panels::Picture;
+use crate::plot::{Figure, Format, render};
 use crate::render::{Job, Watch};
-use crate::scene::Location;
-use crate::scene::SceneError;
+use crate::scene::{Location, Scene, SceneError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
 /// Size of the page's plots, pixels.
-const PLOT: [u32; 2] = [900, 560];
+const PLOT: [u32; 2] = [680, 460];
 
 /// Renders the `.toml` files of `folder` into `into`: a PNG each, and `index.html`.
 pub fn run(folder: &Path, into: &Path, flags: &SceneFlags, backend: &BackendFlags) -> anyhow::Result<ExitCode> {
     let scenes = scenes_in(folder)?;
     let interrupt = Interrupt::listen()?;
     std::fs::create_dir_all(into).map_err(|error| FilmError::write(into, error))?;
-    let mut entries = Vec::new();
+    let mut parts: Vec<Part> = Vec::new();
     for path in &scenes {
-        let entry = entry_of(path, flags, backend)?;
-        write(&into.join(&entry.name).with_extension("png"), &entry.picture)?;
-        entries.push(entry);
+        let (entry, scene) = entry_of(path, into, flags, backend)?;
+        match parts.iter_mut().find(|part| entry.row.is_some() && part.entries[0].row == entry.row) {
+            Some(part) => part.entries.push(entry),
+            None => {
+                let plots = entry.row.map_or(Ok(Vec::new()), |row| plots_of(row, &scene))?;
+                parts.push(Part { entries: vec![entry], plots });
+            }
+        }
         if let Some(code) = interrupt.exit_code() {
             return Ok(ExitCode::from(code));
         }
     }
     // Rows first, in the lecture's order; scenes of no row after them.
-    entries.sort_by_key(|entry| (entry.row.unwrap_or(u32::MAX), entry.name.clone()));
+    parts.sort_by_key(|part| part.entries[0].row.unwrap_or(u32::MAX));
     let index = into.join("index.html");
-    write(&index, page("Illumination models", &entries).as_bytes())?;
-    writeln!(std::io::stdout(), "{} scenes, {}", entries.len(), index.display())?;
+    write(&index, page("Illumination models", &parts).as_bytes())?;
+    writeln!(std::io::stdout(), "{} scenes, {}", scenes.len(), index.display())?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The row's plots as SVG.
+fn plots_of(row: u32, scene: &Scene) -> anyhow::Result<Vec<String>> {
+    let svg = |figure: &Figure| Ok(String::from_utf8_lossy(&render(figure, Format::Svg, PLOT)?).into_owned());
+    plots(row, scene)?.iter().map(svg).collect()
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), FilmError> {
@@ -62,45 +72,41 @@ fn scenes_in(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     Ok(scenes)
 }
 
-fn entry_of(path: &Path, flags: &SceneFlags, backend: &BackendFlags) -> anyhow::Result<Entry> {
+/// What the page shows of the scene in `path`, whose picture goes into `folder`; and the scene, of panels the first.
+fn entry_of(path: &Path, folder: &Path, flags: &SceneFlags, backend: &BackendFlags) -> anyhow::Result<(Entry, Scene)> {
     let unreadable = |source| SceneError::Io { location: Location::file(path), source };
     let text = std::fs::read_to_string(path).map_err(unreadable)?;
-    let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let picture = match panels(&name) {
-        Panels::Columns(names) => labelled(&picture(path, flags, backend)?, names)?,
-        Panels::Variants(variants) => {
-            let one = |(name, key): &(&'static str, &str)| -> anyhow::Result<(&'static str, Picture)> {
-                let mut flags = flags.clone();
-                flags.set.push((*key).to_owned());
-                Ok((name, self::picture(path, &flags, backend)?))
-            };
-            side_by_side(&variants.iter().map(one).collect::<anyhow::Result<Vec<_>>>()?)?
-        }
-    };
-    let (row, caption) = caption(&text);
-    let figure = row.and_then(plot).transpose()?;
-    let plot = figure.map(|figure| render(&figure, Format::Svg, PLOT)).transpose()?;
-    Ok(Entry {
-        name,
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let sheet = Sheet::open(flags, path)?;
+    let mut films = Vec::new();
+    for scene in sheet.scenes() {
+        let (label, scene) = scene?;
+        films.push((label.map(str::to_owned), film(&scene, backend)?));
+    }
+    let pictures: Vec<_> = films.iter().map(|(label, film)| (label.clone(), sheet::displayed(film, 255))).collect();
+    let whole = sheet::composed(&sheet, &pictures)?;
+    write(&folder.join(&stem).with_extension("png"), &sheet::png(&whole)?)?;
+    let png = |(label, picture): &(Option<String>, Picture)| Ok((label.clone(), sheet::png(picture)?));
+    let (row, title) = numbered(&stem);
+    let entry = Entry {
         row,
-        caption,
-        formula: row.and_then(formula),
-        picture: picture.png()?,
-        plot: plot.map(|svg| String::from_utf8_lossy(&svg).into_owned()),
+        title: title.replace('-', " "),
+        caption: caption(&text),
+        pictures: pictures.iter().map(png).collect::<anyhow::Result<_>>()?,
+        columns: sheet.columns(),
         text,
-    })
+        name: stem.clone(),
+    };
+    Ok((entry, flags.load(path)?))
 }
 
-/// The scene as a display shows it.
-fn picture(path: &Path, flags: &SceneFlags, backend: &BackendFlags) -> anyhow::Result<Picture> {
-    let scene = flags.load(path)?;
-    let data = bake_scene(&scene)?;
-    let mut film = film_of(&scene, &data, Rect::whole(scene.film.width, scene.film.height));
+/// All samples of the scene.
+fn film(scene: &Scene, backend: &BackendFlags) -> anyhow::Result<Film> {
+    let data = bake_scene(scene)?;
+    let mut film = film_of(scene, &data, Rect::whole(scene.film.width, scene.film.height));
     let mut renderer = backend.renderer(&data)?;
-    log::info!("{} on {}", path.display(), renderer.name());
+    log::info!("{} on {}", scene.name, renderer.name());
     let watch = Watch { abort: &AtomicBool::new(false), advance: &|_| {} };
     renderer.accumulate(&Job { crop: film.crop(), samples: 0..scene.settings.samples }, &mut film, &watch)?;
-    let codes = encode(&film.resolve(), &film.spec().display(), 255);
-    let pixels = codes.iter().flat_map(|[r, g, b, _]| [*r as u8, *g as u8, *b as u8]).collect();
-    Ok(Picture { width: scene.film.width, height: scene.film.height, pixels })
+    Ok(film)
 }

@@ -4,7 +4,9 @@ pub mod bench;
 pub mod compare;
 pub mod devices;
 mod exact;
+mod fit;
 mod gallery;
+mod growth;
 mod interrupt;
 pub mod merge;
 mod output;
@@ -13,6 +15,8 @@ pub mod plot;
 mod progress;
 pub mod render;
 mod setup;
+mod sheet;
+mod team;
 pub mod verify;
 
 use anyhow::Context;

@@ -58,20 +58,34 @@ impl OutputFlags {
         self.format.map_or_else(|| Format::of(path), Ok)
     }
 
-    /// Writes the film and prints its hash and samples: on stdout, unless that carries the picture.
-    pub fn write(&self, film: &mut Film, format: Format, aovs: &[Aov], mut output: OutputFile) -> Result<()> {
+    /// Bits a channel of a PNG.
+    pub fn sixteen_bit(&self) -> bool {
+        self.bits == "16"
+    }
+
+    /// Displays the film as the flags say.
+    pub fn apply(&self, film: &mut Film) {
         let tonemap = self.tonemap.unwrap_or(film.spec().tonemap);
         let gamma = self.gamma.map_or(film.spec().gamma, |Gamma(gamma)| gamma);
         film.set_display(tonemap, self.exposure.unwrap_or(film.spec().exposure), gamma);
-        let picture = Picture { format, sixteen_bit: self.bits == "16", aovs };
+    }
+
+    /// Writes the film and prints its hash and samples.
+    pub fn write(&self, film: &mut Film, format: Format, aovs: &[Aov], mut output: OutputFile) -> Result<()> {
+        self.apply(film);
+        let picture = Picture { format, sixteen_bit: self.sixteen_bit(), aovs };
         picture.write(film, &mut output)?;
         let piped = output.is_stdout();
         output.commit()?;
-        let report = format!("film {}\nsamples {}\n", film.hash(), film.samples());
-        if piped {
-            eprint!("{report}");
-            return Ok(());
-        }
-        std::io::stdout().write_all(report.as_bytes()).context("cannot write standard output")
+        print_report(&format!("film {}\nsamples {}\n", film.hash(), film.samples()), piped)
     }
+}
+
+/// Prints on stdout, unless that carries the picture.
+pub fn print_report(report: &str, piped: bool) -> Result<()> {
+    if piped {
+        eprint!("{report}");
+        return Ok(());
+    }
+    std::io::stdout().write_all(report.as_bytes()).context("cannot write standard output")
 }

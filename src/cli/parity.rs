@@ -1,6 +1,7 @@
 //! `gonio parity`: the same samples on two backends, bit for bit.
 
 use super::setup::{BackendFlags, BackendName, FetchName, SceneFlags, bake_scene, film_of, thread_count};
+use super::sheet::Sheet;
 use super::{EXIT_DIFFERS, Usage, render};
 use crate::bake::SceneData;
 use crate::film::{Film, Rect};
@@ -90,6 +91,9 @@ impl FromStr for Contender {
 #[derive(serde::Serialize)]
 struct SceneResult {
     scene: String,
+    /// Of a scene with panels.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    panel: Option<String>,
     width: u32,
     height: u32,
     samples: u32,
@@ -126,15 +130,19 @@ pub fn run(args: &ParityArgs, _quiet: bool) -> anyhow::Result<ExitCode> {
     let mut results = Vec::new();
     let mut agree = true;
     for path in &args.scenes {
-        let result = args.compare_scene(path, &contenders)?;
-        agree &= result.comparisons.iter().all(|comparison| comparison.differ == 0);
-        if !args.json {
-            print_result(&result)?;
+        let sheet = Sheet::open(&args.scene_flags, path)?;
+        for scene in sheet.scenes() {
+            let (label, scene) = scene?;
+            let result = args.compare_scene(path, label, &scene, &contenders)?;
+            agree &= result.comparisons.iter().all(|comparison| comparison.differ == 0);
+            if !args.json {
+                print_result(&result)?;
+            }
+            if let Some(expected) = &expected {
+                agree &= check_expected(&result, expected, args.json)?;
+            }
+            results.push(result);
         }
-        if let Some(expected) = &expected {
-            agree &= check_expected(&result, expected, args.json)?;
-        }
-        results.push(result);
     }
     if args.json {
         let document = serde_json::json!({ "schema": 1, "gonio": env!("CARGO_PKG_VERSION"), "scenes": results });
@@ -173,25 +181,31 @@ impl ParityArgs {
         list.into_iter().map(complete).collect()
     }
 
-    fn compare_scene(&self, path: &Path, contenders: &[Contender]) -> anyhow::Result<SceneResult> {
-        let scene = self.scene_flags.load(path)?;
-        let data = bake_scene(&scene)?;
+    fn compare_scene(
+        &self,
+        path: &Path,
+        panel: Option<&str>,
+        scene: &Scene,
+        contenders: &[Contender],
+    ) -> anyhow::Result<SceneResult> {
+        let data = bake_scene(scene)?;
         let mut reference = contenders[0].flags.renderer(&data)?;
-        let film = render_all(reference.as_mut(), &scene, &data)?;
+        let film = render_all(reference.as_mut(), scene, &data)?;
         let mut comparisons = Vec::new();
         for contender in &contenders[1..] {
             let mut renderer = contender.flags.renderer(&data)?;
-            let other = render_all(renderer.as_mut(), &scene, &data)?;
+            let other = render_all(renderer.as_mut(), scene, &data)?;
             comparisons.push(Comparison {
                 reference: contenders[0].label.clone(),
                 other: format!("{} ({})", contender.label, renderer.name()),
                 pixels: film.sums().len(),
                 differ: film.sums().iter().zip(other.sums()).filter(|(a, b)| a != b).count(),
-                first: first_difference(&scene, (&film, reference.as_mut()), (&other, renderer.as_mut()))?,
+                first: first_difference(scene, (&film, reference.as_mut()), (&other, renderer.as_mut()))?,
             });
         }
         Ok(SceneResult {
             scene: path.display().to_string(),
+            panel: panel.map(str::to_owned),
             width: scene.film.width,
             height: scene.film.height,
             samples: scene.settings.samples,
@@ -246,13 +260,19 @@ fn differing_bounce(a: &[Bounce], b: &[Bounce]) -> Option<String> {
     (a.len() != b.len()).then(|| format!("{} bounces and {}", a.len(), b.len()))
 }
 
+/// What follows the name of a scene in messages.
+fn panel_suffix(panel: Option<&str>) -> String {
+    panel.map_or(String::new(), |label| format!(", panel {label:?}"))
+}
+
 fn print_result(result: &SceneResult) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     for comparison in &result.comparisons {
         writeln!(
             out,
-            "{}: {} of {} pixels differ ({}x{}, {} samples, seed {}; {} and {})",
+            "{}{}: {} of {} pixels differ ({}x{}, {} samples, seed {}; {} and {})",
             result.scene,
+            panel_suffix(result.panel.as_deref()),
             comparison.differ,
             comparison.pixels,
             result.width,
@@ -269,13 +289,13 @@ fn print_result(result: &SceneResult) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Film hashes by scene file name, size, samples and seed.
+/// Film hashes by scene file name, panel, size, samples and seed.
 type Expected = BTreeMap<String, String>;
 
-fn key(scene: &str, width: u64, height: u64, samples: u64, seed: u64) -> String {
+fn key(scene: &str, panel: Option<&str>, width: u64, height: u64, samples: u64, seed: u64) -> String {
     let name =
         Path::new(scene).file_name().map_or_else(|| scene.to_owned(), |name| name.to_string_lossy().into_owned());
-    format!("{name} at {width}x{height}, {samples} samples, seed {seed}")
+    format!("{name}{} at {width}x{height}, {samples} samples, seed {seed}", panel_suffix(panel))
 }
 
 /// Reads what `--json` wrote.
@@ -286,8 +306,14 @@ fn read_expected(path: &Path) -> anyhow::Result<Expected> {
     let scenes = document["scenes"].as_array().ok_or_else(|| bad("no list \"scenes\""))?;
     let entry = |scene: &serde_json::Value| {
         let number = |name: &str| scene[name].as_u64();
-        let key =
-            key(scene["scene"].as_str()?, number("width")?, number("height")?, number("samples")?, number("seed")?);
+        let key = key(
+            scene["scene"].as_str()?,
+            scene["panel"].as_str(),
+            number("width")?,
+            number("height")?,
+            number("samples")?,
+            number("seed")?,
+        );
         Some((key, scene["film_hash"].as_str()?.to_owned()))
     };
     scenes.iter().map(|scene| entry(scene).ok_or_else(|| bad("an entry of \"scenes\" lacks a member").into())).collect()
@@ -295,7 +321,9 @@ fn read_expected(path: &Path) -> anyhow::Result<Expected> {
 
 /// Whether the reference film has the recorded hash; an unrecorded scene is a difference.
 fn check_expected(result: &SceneResult, expected: &Expected, quiet: bool) -> std::io::Result<bool> {
-    let key = key(&result.scene, result.width.into(), result.height.into(), result.samples.into(), result.seed.into());
+    let panel = result.panel.as_deref();
+    let key =
+        key(&result.scene, panel, result.width.into(), result.height.into(), result.samples.into(), result.seed.into());
     let (line, same) = match expected.get(&key) {
         Some(hash) if *hash == result.film_hash => (format!("{key}: the recorded hash"), true),
         Some(hash) => (format!("{key}: hash {} differs from the recorded {hash}", result.film_hash), false),

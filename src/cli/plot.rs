@@ -1,15 +1,18 @@
 //! `gonio plot`: pictures of models.
 
 use super::Usage;
+use super::fit::FitArgs;
+use super::growth::GrowthArgs;
 use super::setup::Size;
 use crate::film::OutputFile;
 use crate::plot::curves::{self, FACETS, Facets, Interface, InterfaceKind};
 use crate::plot::edge::edge_figure;
-use crate::plot::shelf::{Shelf, shelf_of};
+use crate::plot::shelf::Shelf;
 use crate::plot::{Figure, Format, lobes, render};
+use crate::scene::load::staging::bare_scene;
 use crate::scene::load::toml::{METALS, nearest};
 use crate::scene::load::{self, Override};
-use crate::scene::{Distribution, Fresnel, Lobe, Masking, Material, Model, Rgb};
+use crate::scene::{Distribution, Fresnel, Lobe, Masking, Material, Model, Rgb, Scene};
 use anyhow::Context;
 use clap::{Args, Subcommand};
 use std::io::Write;
@@ -19,9 +22,11 @@ use std::process::ExitCode;
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  gonio plot lobe scenes/lecture/cook-torrance.toml --theta 60 -o lobes.svg
+  gonio plot lobe scenes/lecture/14-cook-torrance.toml --theta 60 -o lobes.svg
   gonio plot lobe scene.toml --material brass --material clay --cartesian -o lobes.png
   gonio plot cos-n --n 1,8,64 -o highlight.svg
+  gonio plot albedo --against roughness --theta 0,60,85
+  gonio plot fit nickel.binary -o fit.svg
   gonio plot fresnel --metal Cu -o - | display")]
 pub struct PlotArgs {
     #[command(subcommand)]
@@ -42,8 +47,10 @@ pub struct PlotArgs {
 enum What {
     /// Reflection over angle for light from one direction: polar, Cartesian or in perspective.
     Lobe(LobeArgs),
-    /// The part of all light that is reflected, against the angle of view.
-    Albedo(ShelfArgs),
+    /// The part of all light that is reflected, against the angle of view or roughness.
+    Albedo(AlbedoArgs),
+    /// Ward, Phong and Cook-Torrance fitted to a measured table: their lobes, parameters and errors.
+    Fit(FitArgs),
     /// Phong's cos^n for several n.
     CosN {
         /// Exponents.
@@ -55,7 +62,7 @@ enum What {
         /// Roughness: rms slope m, or alpha.
         #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "0.2,0.3,0.4,0.6", value_parser = roughness)]
         m: Vec<f32>,
-        /// beckmann, trowbridge-reitz, phong.
+        /// beckmann, gaussian, trowbridge-reitz, phong.
         #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "beckmann", value_parser = facets)]
         distribution: Vec<Facets>,
     },
@@ -89,11 +96,25 @@ enum What {
         #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true, value_parser = stops)]
         exposure: f64,
     },
+    /// Time a ray against the number of triangles, as `gonio bench` measured it.
+    Growth(GrowthArgs),
+}
+
+#[derive(Args)]
+struct AlbedoArgs {
+    #[command(flatten)]
+    shelf: ShelfArgs,
+    /// angle or roughness.
+    #[arg(long, value_name = "WHAT", default_value = "angle", value_parser = ["angle", "roughness"])]
+    against: String,
+    /// Angles of view, degrees, where it is against roughness.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "0,60,85", value_parser = angle)]
+    theta: Vec<f64>,
 }
 
 /// Which materials.
 #[derive(Args)]
-struct ShelfArgs {
+pub struct ShelfArgs {
     /// A scene file; without it, a few materials of the house.
     scene: Option<PathBuf>,
     /// The material of this name; may be repeated. Default: all that reflect.
@@ -144,7 +165,7 @@ fn roughness(text: &str) -> Result<f32, String> {
     number_in(text, 0.01, 2.0, "a roughness").map(|v| v as f32)
 }
 
-fn angle(text: &str) -> Result<f64, String> {
+pub fn angle(text: &str) -> Result<f64, String> {
     number_in(text, 0.0, 89.0, "degrees")
 }
 
@@ -190,13 +211,19 @@ pub fn run(args: &PlotArgs) -> anyhow::Result<ExitCode> {
     let path = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.svg", args.what.name())));
     let format = args.format.map_or_else(|| format_of(&path), Ok)?;
     let mut output = OutputFile::open(&path)?;
-    let figure = args.what.figure()?;
+    let (figure, report) = args.what.plot()?;
     if format == Format::Csv && figure.curves.is_empty() {
         return Err(Usage("this plot has no curves: .svg or .png".into()).into());
     }
     let file = render(&figure, format, size)?;
     output.write_all(&file).with_context(|| format!("cannot write {}", path.display()))?;
+    let is_stdout = output.is_stdout();
     output.commit()?;
+    // Standard output has room for one of them.
+    match is_stdout {
+        true => std::io::stderr().write_all(report.as_bytes()).context("cannot write standard error")?,
+        false => std::io::stdout().write_all(report.as_bytes()).context("cannot write standard output")?,
+    }
     Ok(ExitCode::SUCCESS)
 }
 
@@ -216,6 +243,7 @@ impl What {
         match self {
             Self::Lobe(_) => "lobe",
             Self::Albedo(_) => "albedo",
+            Self::Fit(_) => "fit",
             Self::CosN { .. } => "cos-n",
             Self::D { .. } => "d",
             Self::G { .. } => "g",
@@ -224,16 +252,16 @@ impl What {
             Self::Light { .. } => "light",
             Self::Edge => "edge",
             Self::Tone { .. } => "tone",
+            Self::Growth(_) => "growth",
         }
     }
 
-    fn figure(&self) -> anyhow::Result<Figure> {
-        Ok(match self {
+    /// The picture, and what is printed beside it.
+    fn plot(&self) -> anyhow::Result<(Figure, String)> {
+        let figure = match self {
             Self::Lobe(args) => args.figure()?,
-            Self::Albedo(args) => {
-                let (shelf, chosen) = args.open(rough_metals)?;
-                lobes::albedo_figure(&shelf, &chosen)
-            }
+            Self::Albedo(args) => args.figure()?,
+            Self::Fit(args) => return args.plot(),
             Self::CosN { n } => curves::cos_power_figure(n),
             Self::D { m, distribution } => curves::distribution_figure(distribution, m),
             Self::G { theta, m } => curves::masking_figure(theta, *m),
@@ -242,7 +270,9 @@ impl What {
             Self::Light { p, delta } => curves::spot_figure(p, *delta),
             Self::Edge => edge_figure()?,
             Self::Tone { exposure } => curves::tone_figure(*exposure),
-        })
+            Self::Growth(args) => args.figure()?,
+        };
+        Ok((figure, String::new()))
     }
 }
 
@@ -261,7 +291,7 @@ impl FresnelArgs {
 
 impl LobeArgs {
     fn figure(&self) -> anyhow::Result<Figure> {
-        let (shelf, chosen) = self.shelf.open(phong_and_cook_torrance)?;
+        let (_, shelf, chosen) = self.shelf.open(phong_and_cook_torrance)?;
         Ok(match (self.cartesian, self.perspective) {
             (true, _) => lobes::cartesian_figure(&shelf, &chosen, self.theta),
             (_, true) => lobes::bodies_figure(&shelf, &chosen, self.theta),
@@ -270,28 +300,46 @@ impl LobeArgs {
     }
 }
 
+impl AlbedoArgs {
+    fn figure(&self) -> anyhow::Result<Figure> {
+        if self.against == "angle" {
+            let (_, shelf, chosen) = self.shelf.open(rough_metals)?;
+            return Ok(lobes::albedo_figure(&shelf, &chosen));
+        }
+        let (scene, _, chosen) = self.shelf.open(metals_of_any_roughness)?;
+        let materials: Vec<Material> = chosen.iter().map(|index| scene.materials[*index].clone()).collect();
+        let figure = lobes::albedo_by_roughness_figure(&materials, &self.theta)?;
+        if figure.curves.len() < 2 {
+            return Err(Usage("none of the materials has a roughness".into()).into());
+        }
+        Ok(figure)
+    }
+}
+
 impl ShelfArgs {
-    /// The materials of the scene, or those that `house` makes, and which of them to show.
-    fn open(&self, house: fn() -> Vec<Material>) -> anyhow::Result<(Shelf, Vec<usize>)> {
-        let shelf = match &self.scene {
-            None => shelf_of(house())?,
-            Some(path) => {
-                let parse = |text: &String| text.parse().map_err(|error| Usage(format!("--set {text}: {error}")));
-                let overrides = self.set.iter().map(parse).collect::<Result<Vec<Override>, _>>()?;
-                let scene = load::load(path, &overrides)?;
-                Shelf::of(&scene).with_context(|| scene.name.clone())?
-            }
+    /// A scene with `--set` applied.
+    pub fn load(path: &Path, set: &[String]) -> anyhow::Result<Scene> {
+        let parse = |text: &String| text.parse().map_err(|error| Usage(format!("--set {text}: {error}")));
+        let overrides = set.iter().map(parse).collect::<Result<Vec<Override>, _>>()?;
+        Ok(load::load(path, &overrides)?)
+    }
+
+    /// The error for a material that is not there.
+    pub fn unknown(scene: &Scene, name: &str) -> Usage {
+        let known: Vec<&str> = scene.materials.iter().map(|material| material.name.as_str()).collect();
+        let hint = nearest(name, known.iter().copied())
+            .map_or_else(|| format!("; there are {}", known.join(", ")), |near| format!("; did you mean {near:?}?"));
+        Usage(format!("there is no material {name:?}{hint}"))
+    }
+
+    /// The scene, or one of the materials that `house` makes; its materials, and which of them to show.
+    fn open(&self, house: fn() -> Vec<Material>) -> anyhow::Result<(Scene, Shelf, Vec<usize>)> {
+        let scene = match &self.scene {
+            None => Scene { materials: house(), ..bare_scene(Path::new("gonio plot")) },
+            Some(path) => Self::load(path, &self.set)?,
         };
-        let named = |name: &String| {
-            shelf.find(name).ok_or_else(|| {
-                let known: Vec<&str> = shelf.names().iter().map(String::as_str).collect();
-                let hint = nearest(name, known.iter().copied()).map_or_else(
-                    || format!("; there are {}", known.join(", ")),
-                    |near| format!("; did you mean {near:?}?"),
-                );
-                Usage(format!("there is no material {name:?}{hint}"))
-            })
-        };
+        let shelf = Shelf::of(&scene).with_context(|| scene.name.clone())?;
+        let named = |name: &String| shelf.find(name).ok_or_else(|| Self::unknown(&scene, name));
         let chosen = match self.material.is_empty() {
             false => self.material.iter().map(named).collect::<Result<Vec<usize>, _>>()?,
             true => (0..shelf.names().len()).filter(|index| shelf.reflects(*index)).collect(),
@@ -299,7 +347,7 @@ impl ShelfArgs {
         if chosen.is_empty() {
             return Err(Usage("the scene has no material that reflects over a range of angles".into()).into());
         }
-        Ok((shelf, chosen))
+        Ok((scene, shelf, chosen))
     }
 }
 
@@ -323,17 +371,28 @@ fn phong_and_cook_torrance() -> Vec<Material> {
 }
 
 fn rough_metals() -> Vec<Material> {
-    let metal = |alpha: f32, compensate: bool| Material {
-        name: format!("α = {alpha}{}", if compensate { ", compensated" } else { "" }),
+    let metal = |alpha: f32, compensate: bool| {
+        let name = format!("α = {alpha}{}", if compensate { ", compensated" } else { "" });
+        Material { name, ..white_metal(alpha, compensate) }
+    };
+    [0.1, 0.3, 0.6, 1.0].map(|alpha| metal(alpha, false)).into_iter().chain([metal(1.0, true)]).collect()
+}
+
+fn metals_of_any_roughness() -> Vec<Material> {
+    vec![white_metal(1.0, false), white_metal(1.0, true)]
+}
+
+/// Reflects everything: what is missing was lost between facets.
+fn white_metal(alpha: f32, compensate: bool) -> Material {
+    Material {
+        name: if compensate { "compensated" } else { "scattered once" }.into(),
         model: Model::RoughConductor {
             distribution: Distribution::TrowbridgeReitz,
             alpha_u: alpha,
             alpha_v: alpha,
-            // Reflects everything: what is missing was lost between facets.
             fresnel: Fresnel::Schlick { f0: Rgb::ONE },
             compensate,
         },
         ..Material::grey("")
-    };
-    [0.1, 0.3, 0.6, 1.0].map(|alpha| metal(alpha, false)).into_iter().chain([metal(1.0, true)]).collect()
+    }
 }

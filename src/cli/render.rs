@@ -4,11 +4,13 @@ use super::gallery;
 use super::interrupt::Interrupt;
 use super::output::OutputFlags;
 use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, crop_of, film_of};
-use super::{Usage, progress};
+use super::sheet::{self, Sheet};
+use super::{Usage, progress, team};
 use crate::bake::SceneData;
 use crate::film::write::{Aov, Format};
 use crate::film::{Film, OutputFile, Rect};
-use crate::render::{Bounce, Counters, Job, Renderer, Watch};
+use crate::render::team::{Member, Order, Share, render};
+use crate::render::{Bounce, Counters};
 use crate::scene::Scene;
 use anyhow::Context;
 use clap::Args;
@@ -16,7 +18,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
-use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 #[derive(Args)]
@@ -25,8 +26,10 @@ Examples:
   gonio render scenes/first-light.toml -o first-light.png
   gonio render bunny.obj --size 1920x1080 --spp 64 -o bunny.png
   gonio render scene.toml --samples 0..32 -o a.gfilm     half of the samples, to merge with another machine's
+  gonio render scenes/lecture/02-phong.toml -o n.png     the scene's panels side by side, with labels
   gonio render --gallery scenes/lecture -o gallery       a page of all scenes of a folder
   gonio render scene.toml --time 60 -o best.exr          whatever a minute gives
+  gonio render scene.toml --device all                   on every GPU, software device and the CPU at once
   gonio render scene.toml --pixel 320,200                every bounce of one sample
   cat scene.toml | gonio render - -o - | display         from standard input to standard output")]
 pub struct RenderArgs {
@@ -94,9 +97,9 @@ fn parse_seconds(text: &str) -> Result<Duration, String> {
 
 /// How a render ended.
 struct Outcome {
+    shares: Vec<Share>,
     counters: Counters,
     render_time: Duration,
-    passes: u32,
     interrupted: Option<u8>,
 }
 
@@ -104,16 +107,21 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     if let (true, Some(folder)) = (args.gallery, &args.output) {
         return gallery::run(&args.scene, folder, &args.scene_flags, &args.backend);
     }
-    let scene = args.scene_flags.load(&args.scene)?;
-    let crop = crop_of(&scene, args.crop)?;
+    let sheet = Sheet::open(&args.scene_flags, &args.scene)?;
     if let Some(pixel) = args.pixel {
-        return inspect(args, &scene, pixel);
+        if sheet.is_divided() {
+            return Err(sheet.refuse("--pixel").into());
+        }
+        return inspect(args, &sheet, pixel);
+    }
+    if sheet.is_divided() && args.time.is_some() {
+        return Err(sheet.refuse("--time").into());
     }
     // From here on there is something to clean up or to save; before, a signal just ends the program.
     let interrupt = Interrupt::listen()?;
     // Opened first: a bad path must not cost a render.
     let path = args.output.clone().unwrap_or_else(|| default_output(&args.scene));
-    let format = args.picture.format_of(&path)?;
+    let format = sheet::format_of(&sheet, &args.picture, &path)?;
     if !args.aov.is_empty() && !matches!(format, Format::Exr | Format::Gfilm) {
         return Err(Usage(format!("--aov needs an .exr (or .gfilm) file, not {}", path.display())).into());
     }
@@ -123,33 +131,65 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let output = OutputFile::open(&path)?;
     let stats_file = args.stats.as_deref().map(OutputFile::open).transpose()?;
 
+    let (mut films, mut stats) = (Vec::new(), Vec::new());
+    let mut interrupted = None;
+    for scene in sheet.scenes() {
+        let (label, scene) = scene?;
+        let mut developed = develop(args, &scene, &interrupt, !quiet && !args.no_progress)?;
+        if let Some(label) = label {
+            developed.stats["panel"] = label.into();
+        }
+        log::info!("{} in {:.2} s", label.map_or_else(|| path.display().to_string(), str::to_owned), developed.seconds);
+        films.push((label.map(str::to_owned), developed.film));
+        stats.push(developed.stats);
+        interrupted = developed.interrupted;
+        if interrupted.is_some() {
+            break;
+        }
+    }
+    match &mut films[..] {
+        [(_, film)] if !sheet.is_divided() => args.picture.write(film, format, &args.aov, output)?,
+        panels => sheet::write(&sheet, panels, &args.picture, output)?,
+    }
+    if let Some(mut file) = stats_file {
+        let stats =
+            if sheet.is_divided() { serde_json::json!({ "schema": 1, "panels": stats }) } else { stats.remove(0) };
+        writeln!(file, "{stats:#}").with_context(|| format!("cannot write {}", file.path().display()))?;
+        file.commit()?;
+    }
+    Ok(interrupted.map_or(ExitCode::SUCCESS, ExitCode::from))
+}
+
+/// A rendered scene.
+struct Developed {
+    film: Film,
+    /// For `--stats`.
+    stats: serde_json::Value,
+    seconds: f64,
+    interrupted: Option<u8>,
+}
+
+/// Bakes and renders one scene.
+fn develop(args: &RenderArgs, scene: &Scene, interrupt: &Interrupt, show_progress: bool) -> anyhow::Result<Developed> {
+    let crop = crop_of(scene, args.crop)?;
     let bake_start = Instant::now();
-    let mut data = bake_scene(&scene)?;
+    let mut data = bake_scene(scene)?;
     data.header.aovs = u32::from(!args.aov.is_empty());
     data.header.hide_background |= u32::from(args.transparent);
     let bake_time = bake_start.elapsed();
-    let mut renderer = args.backend.renderer(&data)?;
-    log::info!("rendering on {}", renderer.name());
+    let members = team::members(&args.backend, &data)?;
 
-    let mut film = film_of(&scene, &data, crop);
+    let mut film = film_of(scene, &data, crop);
     let samples = match (&args.samples, args.time, args.scene_flags.spp) {
         (Some(range), _, _) => range.0.clone(),
         // With a time limit and no count, the time decides.
         (None, Some(_), None) => 0..crate::film::MAX_SAMPLES,
         (None, _, _) => 0..scene.settings.samples,
     };
-    let show_progress = !quiet && !args.no_progress;
-    let outcome = render_passes(renderer.as_mut(), crop, samples, args.time, &mut film, &interrupt, show_progress)?;
+    let outcome = render_samples(members, samples, args.time, &mut film, interrupt, show_progress)?;
     report(&film, &outcome.counters);
-
-    args.picture.write(&mut film, format, &args.aov, output)?;
-    if let Some(mut file) = stats_file {
-        let stats = stats_json(args, &data, &film, renderer.as_ref(), &outcome, bake_time);
-        writeln!(file, "{stats:#}").with_context(|| format!("cannot write {}", file.path().display()))?;
-        file.commit()?;
-    }
-    log::info!("{} in {:.2} s", path.display(), outcome.render_time.as_secs_f64());
-    Ok(outcome.interrupted.map_or(ExitCode::SUCCESS, ExitCode::from))
+    let stats = stats_json(args, &data, &film, &outcome, bake_time);
+    Ok(Developed { film, stats, seconds: outcome.render_time.as_secs_f64(), interrupted: outcome.interrupted })
 }
 
 /// The scene's name in the current folder, as a PNG; standard input makes `out.png`.
@@ -158,11 +198,10 @@ fn default_output(scene: &Path) -> PathBuf {
     PathBuf::from(stem.unwrap_or("out".as_ref())).with_extension("png")
 }
 
-/// Renders pass by pass, each a whole number of samples for every pixel of the crop, until the samples, the time or
-/// the user's patience end.
-fn render_passes(
-    renderer: &mut dyn Renderer,
-    crop: Rect,
+/// Renders range by range, each a whole number of samples for every pixel of the crop, until the samples, the time or the
+/// user's patience end.
+fn render_samples(
+    members: Vec<Member>,
     samples: std::ops::Range<u32>,
     time: Option<Duration>,
     film: &mut Film,
@@ -170,33 +209,18 @@ fn render_passes(
     show_progress: bool,
 ) -> anyhow::Result<Outcome> {
     let start = Instant::now();
-    let pixels = crop.area() as u64;
-    let bar = progress::bar(pixels * u64::from(samples.end - samples.start), show_progress);
-    let abort = AtomicBool::new(false);
-    let watch = Watch { abort: &abort, advance: &|done| bar.inc(done) };
-    let mut outcome =
-        Outcome { counters: Counters::default(), render_time: Duration::ZERO, passes: 0, interrupted: None };
-    let mut next = samples.start;
-    let mut pass_samples = 1;
-    while next < samples.end {
-        let end = next.saturating_add(pass_samples).min(samples.end);
-        let pass_start = Instant::now();
-        outcome.counters += renderer.accumulate(&Job { crop, samples: next..end }, film, &watch)?;
-        outcome.passes += 1;
-        let pass_time = pass_start.elapsed();
-        outcome.interrupted = interrupt.exit_code();
-        if outcome.interrupted.is_some() || time.is_some_and(|limit| start.elapsed() >= limit) {
-            break;
-        }
-        // Passes of about half a second: long enough to fill a device, short enough to stop at; shorter if time runs out.
-        let left = time.map_or(0.5, |limit| limit.saturating_sub(start.elapsed()).as_secs_f64().min(0.5));
-        pass_samples = (f64::from(end - next) * left / pass_time.as_secs_f64().max(1e-4))
-            .clamp(1.0, f64::from(4 * (end - next))) as u32;
-        next = end;
-    }
+    let crop = film.crop();
+    let bar = progress::bar(crop.area() as u64 * u64::from(samples.end - samples.start), show_progress);
+    let advance = |done: i64| match u64::try_from(done) {
+        Ok(done) => bar.inc(done),
+        Err(_) => bar.dec(done.unsigned_abs()),
+    };
+    let stop = || interrupt.exit_code().is_some();
+    let shares = render(members, &Order { crop, samples, time, stop: &stop, advance: &advance }, film)?;
     bar.finish_and_clear();
-    outcome.render_time = start.elapsed();
-    Ok(outcome)
+    let mut counters = Counters::default();
+    shares.iter().for_each(|share| counters += share.counters);
+    Ok(Outcome { shares, counters, render_time: start.elapsed(), interrupted: interrupt.exit_code() })
 }
 
 /// Says what the user should know of the samples.
@@ -219,24 +243,26 @@ fn stats_json(
     args: &RenderArgs,
     data: &SceneData,
     film: &Film,
-    renderer: &dyn Renderer,
     outcome: &Outcome,
     bake_time: Duration,
 ) -> serde_json::Value {
     let seconds = outcome.render_time.as_secs_f64();
     let rays = outcome.counters.closest_rays + outcome.counters.shadow_rays;
+    let names: Vec<&str> = outcome.shares.iter().map(|share| share.name.as_str()).collect();
+    let devices: Vec<_> = outcome.shares.iter().map(share_json).collect();
     serde_json::json!({
         "schema": 1,
         "gonio": env!("CARGO_PKG_VERSION"),
         "scene": args.scene,
         "film_hash": film.hash().to_string(),
-        "device": renderer.name(),
+        "device": names.join(" + "),
+        "devices": devices,
         "width": film.spec().width,
         "height": film.spec().height,
         "crop": film.crop(),
         "seed": film.spec().seed,
         "samples": film.samples().to_string(),
-        "passes": outcome.passes,
+        "passes": outcome.shares.iter().map(|share| share.ranges).sum::<u32>(),
         "interrupted": outcome.interrupted.is_some(),
         "nan_count": film.nan_count(),
         "clamped_count": film.clamped_count(),
@@ -252,13 +278,29 @@ fn stats_json(
     })
 }
 
+/// What one device did.
+fn share_json(share: &Share) -> serde_json::Value {
+    let rays = share.counters.closest_rays + share.counters.shadow_rays;
+    serde_json::json!({
+        "device": share.name,
+        "samples": share.samples,
+        "passes": share.ranges,
+        "busy_s": share.busy_s,
+        "rays_per_s": rays as f64 / share.busy_s.max(1e-9),
+        "counters": share.counters,
+        "error": share.error.as_ref().map(ToString::to_string),
+    })
+}
+
 /// Prints every bounce of one sample.
-fn inspect(args: &RenderArgs, scene: &Scene, pixel: Pixel) -> anyhow::Result<ExitCode> {
+fn inspect(args: &RenderArgs, sheet: &Sheet, pixel: Pixel) -> anyhow::Result<ExitCode> {
+    let Some(scene) = sheet.scenes().next() else { return Ok(ExitCode::SUCCESS) };
+    let (_, scene) = scene?;
     if pixel.x >= scene.film.width || pixel.y >= scene.film.height {
         let frame = Rect::whole(scene.film.width, scene.film.height);
         return Err(Usage(format!("--pixel {},{} is not inside the frame {frame}", pixel.x, pixel.y)).into());
     }
-    let data = bake_scene(scene)?;
+    let data = bake_scene(&scene)?;
     let sample = args.samples.as_ref().map_or(0, |range| range.0.start);
     let mut renderer = args.backend.renderer(&data)?;
     let bounces = renderer.inspect(pixel.x, pixel.y, sample)?;

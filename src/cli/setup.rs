@@ -1,6 +1,6 @@
 //! What render, parity and others share: from flags to a baked scene and a renderer.
 
-use super::{Usage, exact, progress};
+use super::{Usage, exact, progress, team};
 use crate::bake::{SceneData, bake};
 use crate::film::{Film, FilmSpec, Rect};
 use crate::render::cpu::CpuRenderer;
@@ -110,6 +110,9 @@ pub struct SceneFlags {
     /// Change any key of the scene file, as in `material.copper.color=[1,0,0]`; may be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// One of the scene's panels alone, by its label or its number from 0.
+    #[arg(long, value_name = "LABEL")]
+    pub panel: Option<String>,
     /// Give a parameter of a Mitsuba scene a value, as in `spp=64`; may be repeated.
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE")]
     pub define: Vec<Define>,
@@ -131,8 +134,13 @@ impl FromStr for Define {
 }
 
 impl SceneFlags {
-    /// Loads a scene (`-` is TOML on standard input) and applies the flags. Prints the loader's warnings.
+    /// Loads a scene without the changes of its panels and applies the flags. Prints the loader's warnings.
     pub fn load(&self, path: &Path) -> anyhow::Result<Scene> {
+        Ok(self.adjusted(self.panels(path)?.scene(None)?))
+    }
+
+    /// Opens a scene (`-` is TOML on standard input) with its keys changed by the flags.
+    pub fn panels(&self, path: &Path) -> anyhow::Result<load::Panels> {
         let size = self.size.map(|size| format!("film.size=[{},{}]", size.width, size.height));
         let overrides = self
             .set
@@ -141,7 +149,11 @@ impl SceneFlags {
             .map(|text| text.parse().map_err(|error| Usage(format!("--set {text}: {error}"))))
             .collect::<Result<Vec<load::Override>, _>>()?;
         let defines: Vec<(String, String)> = self.define.iter().map(|d| (d.0.clone(), d.1.clone())).collect();
-        let mut scene = load::load_with(path, &overrides, &defines)?;
+        Ok(load::Panels::open(path, &overrides, &defines)?)
+    }
+
+    /// A loaded scene with its settings changed by the flags. Prints the loader's warnings.
+    pub fn adjusted(&self, mut scene: Scene) -> Scene {
         let settings = &mut scene.settings;
         settings.samples = self.spp.unwrap_or(settings.samples);
         settings.seed = self.seed.unwrap_or(settings.seed);
@@ -150,7 +162,7 @@ impl SceneFlags {
         for warning in &scene.warnings {
             log::warn!("{warning}");
         }
-        Ok(scene)
+        scene
     }
 }
 
@@ -209,8 +221,9 @@ pub struct BackendFlags {
     #[arg(long, default_value = "auto")]
     pub backend: BackendName,
     /// A Vulkan device: its index or a part of its name as `gonio devices` prints them, or its kind
-    /// (discrete, integrated, virtual, software).
-    #[arg(long, value_name = "INDEX|NAME|KIND")]
+    /// (discrete, integrated, virtual, software); or `cpu`, the CPU backend. `render` takes several at once, as in
+    /// `0,1,cpu`, or `all`.
+    #[arg(long, value_name = "INDEX|NAME|KIND|cpu")]
     pub device: Option<String>,
     /// How kernels read the scene.
     #[arg(long, default_value = "auto")]
@@ -229,6 +242,12 @@ impl BackendFlags {
         let vulkan = || VulkanRenderer::new(data, self.vulkan_options());
         match self.backend {
             BackendName::Cpu => Ok(Box::new(CpuRenderer::new(data, self.threads)?)),
+            BackendName::Auto if self.device.as_deref() == Some(team::CPU) => {
+                Ok(Box::new(CpuRenderer::new(data, self.threads)?))
+            }
+            _ if self.device.as_deref() == Some(team::ALL) => {
+                Err(RenderError::NoDevice("--device all: this command takes one device".to_owned()))
+            }
             BackendName::Vulkan => self.proved(vulkan()?),
             BackendName::Auto if self.device.is_some() => self.proved(vulkan()?),
             BackendName::Auto => match vulkan() {

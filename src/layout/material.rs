@@ -27,6 +27,8 @@ pub const MODEL_MEASURED: u32 = 18;
 pub const MODEL_NULL: u32 = 19;
 /// Two materials, one after the other from `table` on: (1 - extra) of the first and extra of the second.
 pub const MODEL_BLEND: u32 = 20;
+/// Measured for directions of light (`shading/tabulated`).
+pub const MODEL_TABULATED: u32 = 21;
 
 /// Material flag: the filtered form of non-refractive transparency, I_1 + k_t O_t I_2.
 pub const MATERIAL_FILTERED: u32 = 1;

@@ -51,6 +51,28 @@ pub struct SceneView<'a> {
     pub tables: &'a [f32],
 }
 
+impl<'a> SceneView<'a> {
+    /// A scene of nothing but `tables`, for models that look something up.
+    pub fn of_tables(header: &'a SceneHeader, tables: &'a [f32]) -> Self {
+        Self {
+            header,
+            nodes: &[],
+            triangles: &[],
+            instances: &[],
+            top_instances: &[],
+            faces: &[],
+            vertices: &[],
+            materials: &[],
+            lights: &[],
+            emitters: &[],
+            environments: &[],
+            textures: &[],
+            texels: &[],
+            tables,
+        }
+    }
+}
+
 // The Rust side of the GLSL `load_*` functions, so that twins read alike.
 macro_rules! loads {
     ($($name:ident: $array:ident -> $record:ty;)*) => {$(

@@ -1,9 +1,12 @@
 //! Curves of the parts that models are made of: no material is needed for them.
 
 use super::figure::{Axis, Color, Curve, Figure, Frame, Side, Strip, palette};
+use crate::bake::gaussian_scale;
 use crate::film::display::{quantise, srgb_encode};
 use crate::film::tone::tone_curve;
-use crate::layout::{DISTRIBUTION_BECKMANN, DISTRIBUTION_PHONG, DISTRIBUTION_TROWBRIDGE_REITZ, Light};
+use crate::layout::{
+    DISTRIBUTION_BECKMANN, DISTRIBUTION_GAUSSIAN, DISTRIBUTION_PHONG, DISTRIBUTION_TROWBRIDGE_REITZ, Light,
+};
 use crate::scene::ToneMap;
 use crate::shading::distribution::{facet_d, smith_g_correlated};
 use crate::shading::fresnel::{fresnel_conductor3, fresnel_dielectric, fresnel_schlick3};
@@ -33,7 +36,7 @@ pub fn cos_power_figure(exponents: &[f32]) -> Figure {
     Figure::cartesian("Phong's highlight", "cosⁿ φ: the larger n, the narrower", x, "cosⁿ φ", curves)
 }
 
-/// A distribution of facets that needs no table.
+/// A distribution of facets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Facets {
     pub name: &'static str,
@@ -41,8 +44,9 @@ pub struct Facets {
     pub kind: u32,
 }
 
-pub const FACETS: [Facets; 3] = [
+pub const FACETS: [Facets; 4] = [
     Facets { name: "beckmann", kind: DISTRIBUTION_BECKMANN },
+    Facets { name: "gaussian", kind: DISTRIBUTION_GAUSSIAN },
     Facets { name: "trowbridge-reitz", kind: DISTRIBUTION_TROWBRIDGE_REITZ },
     Facets { name: "phong", kind: DISTRIBUTION_PHONG },
 ];
@@ -52,7 +56,8 @@ pub const FACETS: [Facets; 3] = [
 pub fn distribution_figure(facets: &[Facets], roughness: &[f32]) -> Figure {
     let cases = facets.iter().flat_map(|facets| roughness.iter().map(move |m| (facets, *m)));
     let curve = |(i, (facets, m)): (usize, (&Facets, f32))| {
-        let d = |a: f64| f64::from(facet_d(facets.kind, m, m, 1.0, direction(a)));
+        let scale = if facets.kind == DISTRIBUTION_GAUSSIAN { gaussian_scale(m) as f32 } else { 1.0 };
+        let d = |a: f64| f64::from(facet_d(facets.kind, m, m, scale, direction(a)));
         Curve::sampled(format!("{}, m = {m}", facets.name), i, [0.0, 90.0], d)
     };
     let curves: Vec<Curve> = cases.enumerate().map(curve).collect();
@@ -118,6 +123,16 @@ impl Interface {
         Self { name: format!("η = {eta}"), kind: InterfaceKind::Dielectric { eta } }
     }
 
+    /// The same after Cook and Torrance 1982, section "Spectral composition": colours known at normal incidence only go to
+    /// white as the reflectance of a dielectric with their mean F(0) does.
+    pub fn reflectance_1982(&self, degrees: f64) -> Vec3 {
+        let color = self.reflectance(0.0);
+        let root = libm::sqrt(luminance(color).min(0.999));
+        let eta = ((1.0 + root) / (1.0 - root)) as f32;
+        let [f0, f] = [0.0, degrees].map(|angle| fresnel_dielectric(cosine(angle), eta));
+        color + (Vec3::ONE - color) * ((f - f0).max(0.0) / (1.0 - f0))
+    }
+
     /// Reflectance at `degrees`, linear Rec. 709.
     pub fn reflectance(&self, degrees: f64) -> Vec3 {
         match self.kind {
@@ -168,15 +183,22 @@ pub fn fresnel_figure(interfaces: &[Interface]) -> Figure {
 }
 
 /// The colour of F against the angle, as a display shows it: a metal's own at normal incidence, white at grazing (Cook
-/// and Torrance 1982, figure 5).
+/// and Torrance 1982, figure 5); one metal alone also as that paper computes it.
 pub fn ramp_figure(interfaces: &[Interface]) -> Figure {
     let code = |v: f32| quantise(srgb_encode(f64::from(v).clamp(0.0, 1.0)), 255) as u8;
-    let strip = |interface: &Interface| Strip {
-        name: interface.name.clone(),
-        colors: (0..180).map(|i| interface.reflectance((f64::from(i) + 0.5) / 2.0).to_array().map(code)).collect(),
+    let strip = |name: &str, reflectance: &dyn Fn(f64) -> Vec3| Strip {
+        name: name.into(),
+        colors: (0..180).map(|i| reflectance((f64::from(i) + 0.5) / 2.0).to_array().map(code)).collect(),
+    };
+    let strips = match interfaces {
+        [metal @ Interface { kind: InterfaceKind::Conductor { .. }, .. }] => vec![
+            strip(&metal.name, &|angle| metal.reflectance(angle)),
+            strip(&format!("{}, 1982", metal.name), &|angle| metal.reflectance_1982(angle)),
+        ],
+        several => several.iter().map(|one| strip(&one.name, &|angle| one.reflectance(angle))).collect(),
     };
     let x = Axis::degrees("θ between N and L [°]", 0.0, 90.0);
-    let frame = Frame::Ramp { x, strips: interfaces.iter().map(strip).collect() };
+    let frame = Frame::Ramp { x, strips };
     let note = "white light reflected at θ, as sRGB: the colour fades to the light's own at grazing angles";
     Figure { title: "Colour of Fresnel reflectance".into(), note: note.into(), frame, curves: Vec::new() }
 }

@@ -12,7 +12,7 @@ use crate::scene::{Scene, Shading};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// A row of pixels across the highlight of the sphere of scenes/lecture/shading-models.toml.
+/// A row of pixels across the highlight of the sphere of scenes/lecture/08-shading-models.toml.
 const SCENE: &str = include_str!("edge.toml");
 
 /// Radiance along the row, for one way to shade.

@@ -1,92 +1,230 @@
-//! What the gallery says of each row of the lecture: its formula, its plot, and how its picture is divided.
+//! What the gallery says of each row of the lecture: its name, its formulae, its plots.
 
 use super::curves::{self, FACETS, Interface};
 use super::edge::edge_figure;
-use super::{Figure, PlotError};
+use super::shelf::Shelf;
+use super::{Figure, PlotError, lobes};
+use crate::scene::load::toml::METALS;
+use crate::scene::{Fresnel, Scene};
 
-/// The formula of a row, as text.
-pub fn formula(row: u32) -> Option<&'static str> {
-    Some(match row {
-        1 => "I = k_d I_p (N·L)",
-        2 => "I = k_a I_a + k_d I_p (N·L) + k_s I_p (V·R)ⁿ,  R = 2N(N·L) − L",
-        3 => "I_s = k_s I_p (N·H)ⁿ,  H = (L + V) / |L + V|",
-        4 => "I = k_a I_a O_d",
-        5 => {
-            "I = I_a k_a O_d + Σ f_att,i I_p,i [k_d O_d (N·L_i) + k_s O_s (N·H_i)ⁿ],  f_att = min(1, 1 / (c₁ + c₂d + c₃d²))"
-        }
-        6 => "L_display = T(2^exposure L),  Reinhard: T = L / (1 + L)",
-        7 => "ρ = I_r / E_i,  E_i = I_i cos θ_i dω",
-        8 => "flat: I(centroid);  Gouraud: I = b₀I(p₀) + b₁I(p₁) + b₂I(p₂);  Phong: N = b₀N₀ + b₁N₁ + b₂N₂",
-        10 => "ρ = ρ_d/π + ρ_s exp[−tan²δ (cos²φ/α_x² + sin²φ/α_y²)] / (4π α_x α_y √(cos θ_i cos θ_r))",
-        11 => "L, V constant; H constant",
-        14..=18 => {
-            "R_s = D G F / (π (N·V)(N·L));  D = exp[−(tan α / m)²] / (4m² cos⁴ α),  G = min(1, 2(N·H)(N·V)/(V·H), 2(N·H)(N·L)/(V·H))"
-        }
-        21 => "I_L = I_L' (−L·L')ᵖ,  0 where γ > δ",
-        22 => "I = (1 − k_t1) I_1 + k_t1 I_2;  filtered: I = I_1 + k_t1 O_t1 I_2",
-        23 => "η_i sin θ_i = η_t sin θ_t,  T = (η_it cos θ_i − cos θ_t) N − η_it L,  I = I_0 exp(−σ d)",
-        24 => "I = I_local + k_s I_mirror + k_t I_refracted",
-        25 => "L_o = L_e + ∫ ρ L_i cos θ_i dω",
-        26 => "I(x) = Σ w f(x − x_i) L(x_i) / Σ w f(x − x_i)",
-        27 => "O_d(u, v): bilinear between texels",
-        _ => return None,
-    })
+/// A row of the lecture.
+pub struct Row {
+    pub number: u32,
+    pub title: &'static str,
+    /// LaTeX, one line each.
+    pub formulae: &'static [&'static str],
 }
 
-/// The plot of a row.
-pub fn plot(row: u32) -> Option<Result<Figure, PlotError>> {
-    Some(match row {
-        2 => Ok(curves::cos_power_figure(&[1.0, 8.0, 64.0])),
-        6 => Ok(curves::tone_figure(0.0)),
-        8 => edge_figure(),
-        14..=18 => Ok(curves::distribution_figure(&FACETS[..1], &[0.2, 0.3, 0.4, 0.6])),
-        21 => Ok(curves::spot_figure(&[1.0, 8.0, 64.0], 40.0)),
-        23 => Ok(curves::fresnel_figure(&[Interface::dielectric(1.5), Interface::dielectric(2.417)])),
-        _ => return None,
-    })
+const fn row(number: u32, title: &'static str, formulae: &'static [&'static str]) -> Row {
+    Row { number, title, formulae }
 }
 
-/// How a scene's picture is shown: names under equal parts of it, or the same scene several times, each with one key
-/// changed.
-pub enum Panels {
-    Columns(&'static [&'static str]),
-    /// Name and `key.path=value`.
-    Variants(&'static [(&'static str, &'static str)]),
+/// The rows that have scenes, in order.
+pub const ROWS: &[Row] = &[
+    row(1, "Lambert's law", &[r"I = k_d\, I_p\, (N \cdot L)"]),
+    row(
+        2,
+        "Phong's highlight",
+        &[r"I = k_a I_a + k_d I_p (N \cdot L) + k_s I_p (V \cdot R)^n", r"R = 2 N (N \cdot L) - L"],
+    ),
+    row(3, "Blinn's highlight", &[r"I_s = k_s I_p (N \cdot H)^n", r"H = \frac{L + V}{\lvert L + V \rvert}"]),
+    row(4, "Ambient light", &[r"I = k_a I_a O_d"]),
+    row(
+        5,
+        "Several lights, and how they fall off",
+        &[
+            r"I = I_a k_a O_d + \sum_i f_{\mathrm{att},i}\, I_{p,i} \left[ k_d O_d (N \cdot L_i) + k_s O_s (N \cdot H_i)^n \right]",
+            r"f_{\mathrm{att}} = \min\left(1, \frac{1}{c_1 + c_2 d + c_3 d^2}\right)",
+        ],
+    ),
+    row(
+        6,
+        "The range of a display",
+        &[r"L_{\mathrm{display}} = T(2^{\mathrm{exposure}} L)", r"T_{\mathrm{Reinhard}}(L) = \frac{L}{1 + L}"],
+    ),
+    row(
+        7,
+        "The BRDF",
+        &[
+            r"\rho(\lambda, \theta_r, \phi_r, \theta_i, \phi_i) = \frac{I_r}{E_i}",
+            r"E_i = I_i \cos\theta_i\, d\omega_i",
+        ],
+    ),
+    row(
+        8,
+        "Flat, Gouraud and Phong shading",
+        &[
+            r"I_{\mathrm{flat}} = I(p_c, N_c)",
+            r"I_{\mathrm{Gouraud}} = b_0 I(p_0, N_0) + b_1 I(p_1, N_1) + b_2 I(p_2, N_2)",
+            r"I_{\mathrm{Phong}} = I(p, N), \quad N \propto b_0 N_0 + b_1 N_1 + b_2 N_2",
+        ],
+    ),
+    row(
+        9,
+        "Measured BRDFs",
+        &[r"\rho(\theta_h, \theta_d, \phi_d)", r"\rho_{\mathrm{fit}} = \arg\min_m \sum (\rho_m - \rho)^2"],
+    ),
+    row(
+        10,
+        "Ward's Gaussian",
+        &[
+            r"\rho = \frac{\rho_d}{\pi} + \rho_s \frac{1}{\sqrt{\cos\theta_i \cos\theta_r}} \frac{\exp\left[-\tan^2\delta \left(\cos^2\phi / \alpha_x^2 + \sin^2\phi / \alpha_y^2\right)\right]}{4\pi \alpha_x \alpha_y}",
+        ],
+    ),
+    row(
+        11,
+        "Light and eye at infinity",
+        &[r"L,\; V \text{ constant} \;\Rightarrow\; H = \frac{L + V}{\lvert L + V \rvert} \text{ constant}"],
+    ),
+    row(
+        14,
+        "Cook and Torrance's model",
+        &[
+            r"R_s = \frac{D\, G\, F}{\pi\, (N \cdot V)(N \cdot L)}",
+            r"I = k_a I_a O_d + \sum_i I_i\, d\omega_i \left( k_d R_d (N \cdot L_i) + k_s R_s (N \cdot L_i) \right), \quad k_d + k_s = 1",
+        ],
+    ),
+    row(
+        15,
+        "Distributions of facets",
+        &[
+            r"D_{\mathrm{Beckmann}} = \frac{1}{4 m^2 \cos^4\alpha}\, e^{-(\tan\alpha / m)^2}",
+            r"D_{\mathrm{Gauss}} = c\, e^{-(\alpha / m)^2}",
+            r"D_{\mathrm{Trowbridge\text{-}Reitz}} = \left( \frac{c^2}{\cos^2\alpha\,(c^2 - 1) + 1} \right)^2, \quad D_{\mathrm{Phong}} = \cos^c \alpha",
+        ],
+    ),
+    row(
+        16,
+        "Masking and shadowing",
+        &[
+            r"G = \min\left( 1,\; \frac{2 (N \cdot H)(N \cdot V)}{V \cdot H},\; \frac{2 (N \cdot H)(N \cdot L)}{V \cdot H} \right)",
+        ],
+    ),
+    row(
+        17,
+        "Fresnel reflectance",
+        &[
+            r"F = \frac{1}{2} \frac{(g - c)^2}{(g + c)^2} \left( 1 + \frac{(c (g + c) - 1)^2}{(c (g - c) + 1)^2} \right), \quad c = V \cdot H, \; g^2 = \eta^2 + c^2 - 1",
+        ],
+    ),
+    row(
+        18,
+        "What is reflected of the light",
+        &[r"k_s + k_d = 1", r"a(\theta) = \int_\Omega \rho \cos\theta_i \, d\omega_i \le 1"],
+    ),
+    row(
+        19,
+        "Limits of the model, lifted",
+        &[
+            r"D(h) = \frac{1}{\pi \alpha_x \alpha_y \cos^4\theta_h}\, e^{-\tan^2\theta_h \left( \cos^2\phi_h / \alpha_x^2 + \sin^2\phi_h / \alpha_y^2 \right)}",
+            r"\rho_d(\theta_i, \theta_r) = c\, \left(1 - a(\theta_i)\right)\left(1 - a(\theta_r)\right)",
+        ],
+    ),
+    row(21, "Directed light", &[r"I_L = I_{L'} (-L \cdot L')^p", r"I_L = 0 \text{ where } \gamma > \delta"]),
+    row(
+        22,
+        "Transparency without refraction",
+        &[r"I = (1 - k_{t1}) I_1 + k_{t1} I_2", r"I = I_1 + k_{t1} O_{t1} I_2 \quad \text{(filtered)}"],
+    ),
+    row(
+        23,
+        "Refraction",
+        &[
+            r"\eta_i \sin\theta_i = \eta_t \sin\theta_t",
+            r"\cos^2\theta_t = 1 - \left(\frac{\eta_i}{\eta_t}\right)^2 (1 - \cos^2\theta_i)",
+            r"T = \left( \frac{\eta_i}{\eta_t} \cos\theta_i - \cos\theta_t \right) N - \frac{\eta_i}{\eta_t} L",
+            r"I = I_0\, e^{-\sigma d}",
+        ],
+    ),
+    row(
+        24,
+        "Whitted's ray tracing",
+        &[r"I = I_{\mathrm{local}} + k_r I_{\mathrm{mirror}} + k_t I_{\mathrm{refracted}}"],
+    ),
+    row(25, "Global illumination", &[r"L_o = L_e + \int_\Omega \rho\, L_i \cos\theta_i \, d\omega_i"]),
+    row(26, "Anti-aliasing", &[r"I(x) = \frac{\sum_i f(x - x_i)\, L(x_i)}{\sum_i f(x - x_i)}"]),
+    row(27, "Textures", &[r"O_d = \sum_{i, j} w_i(u)\, w_j(v)\, T_{i j}"]),
+];
+
+/// The row with this number.
+pub fn row_of(number: u32) -> Option<&'static Row> {
+    ROWS.iter().find(|row| row.number == number)
 }
 
-/// The panels of the scene file with this stem.
-pub fn panels(stem: &str) -> Panels {
-    match stem {
-        "phong" => Panels::Columns(&["n = 1", "n = 8", "n = 64"]),
-        "shading-models" => Panels::Columns(&["flat", "Gouraud", "Phong"]),
-        "cook-torrance" => Panels::Columns(&["copper", "gold", "silver", "plastic"]),
-        "ambient" => {
-            Panels::Variants(&[("without ambient term", "render.ambient=0"), ("with it", "render.shadows=true")])
-        }
-        "zone-plate" => Panels::Variants(&[
-            ("box", "film.filter=box"),
-            ("gaussian", "film.filter=gaussian"),
-            ("blackman-harris", "film.filter=blackman-harris"),
-            ("mitchell", "film.filter=mitchell"),
-        ]),
-        "tone-curves" => Panels::Variants(&[
-            ("clamp", "film.tonemap=clamp"),
-            ("normalise", "film.tonemap=normalise"),
-            ("reinhard", "film.tonemap=reinhard"),
-            ("aces", "film.tonemap=aces"),
-            ("agx", "film.tonemap=agx"),
-        ]),
-        _ => Panels::Columns(&[]),
+/// The row that a scene file's stem begins with, as in `02-phong`, and the rest of its name.
+pub fn numbered(stem: &str) -> (Option<u32>, &str) {
+    let rest = stem.trim_start_matches(|c: char| c.is_ascii_digit());
+    match (stem[..stem.len() - rest.len()].parse(), rest.strip_prefix('-')) {
+        (Ok(number), Some(name)) => (Some(number), name),
+        _ => (None, stem),
     }
 }
 
-/// What the comment at the head of a scene file says: the row it belongs to, if any, and the rest.
-pub fn caption(text: &str) -> (Option<u32>, String) {
+/// The plots of a row; `scene` is its scene, some show the materials of it.
+pub fn plots(row: u32, scene: &Scene) -> Result<Vec<Figure>, PlotError> {
+    let shelf = || Shelf::of(scene).map_err(PlotError::new);
+    let shown = |shelf: &Shelf| (0..shelf.names().len()).filter(|i| shelf.reflects(*i)).collect::<Vec<_>>();
+    let of_shelf = |figures: &dyn Fn(&Shelf, &[usize]) -> Vec<Figure>| {
+        let shelf = shelf()?;
+        let materials = shown(&shelf);
+        Ok(figures(&shelf, &materials))
+    };
+    match row {
+        2 => Ok(vec![curves::cos_power_figure(&[1.0, 8.0, 64.0])]),
+        3 => of_shelf(&|shelf, materials| vec![lobes::cartesian_figure(shelf, materials, 45.0)]),
+        6 => Ok(vec![curves::tone_figure(0.0)]),
+        7 => of_shelf(&|shelf, materials| {
+            let bodies = materials.chunks(3).map(|three| lobes::bodies_figure(shelf, three, 45.0));
+            std::iter::once(lobes::polar_figure(shelf, materials, 45.0)).chain(bodies).collect()
+        }),
+        8 => Ok(vec![edge_figure()?]),
+        10 => of_shelf(&|shelf, materials| vec![lobes::cartesian_figure(shelf, materials, 60.0)]),
+        14 => of_shelf(&|shelf, materials| {
+            let kinds = by_kind(shelf.names(), materials);
+            kinds.iter().map(|kind| lobes::cartesian_figure(shelf, kind, 60.0)).collect()
+        }),
+        15 => Ok(vec![
+            curves::distribution_figure(&FACETS[..1], &[0.2, 0.3, 0.4, 0.6]),
+            curves::distribution_figure(&FACETS, &[0.3]),
+        ]),
+        16 => Ok(vec![curves::masking_figure(&[0.0, 30.0, 60.0], 0.6)]),
+        17 => Ok(vec![curves::fresnel_figure(&metals()), curves::ramp_figure(&metals())]),
+        18 => of_shelf(&|shelf, materials| vec![lobes::albedo_figure(shelf, materials)]),
+        21 => Ok(vec![curves::spot_figure(&[1.0, 8.0, 64.0], 40.0)]),
+        23 => Ok(vec![curves::fresnel_figure(&[Interface::dielectric(1.5), Interface::dielectric(2.417)])]),
+        _ => Ok(Vec::new()),
+    }
+}
+
+/// Materials whose names begin with the same word before a comma, as in "copper, Phong"; those without a comma in none.
+fn by_kind(names: &[String], materials: &[usize]) -> Vec<Vec<usize>> {
+    let mut kinds: Vec<(&str, Vec<usize>)> = Vec::new();
+    for &index in materials {
+        let Some((kind, _)) = names[index].split_once(',') else { continue };
+        match kinds.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, members)) => members.push(index),
+            None => kinds.push((kind, vec![index])),
+        }
+    }
+    kinds.into_iter().map(|(_, members)| members).collect()
+}
+
+fn metals() -> Vec<Interface> {
+    let interface = |(name, metal): &(&str, crate::scene::load::toml::Metal)| match metal.fresnel() {
+        Fresnel::Conductor { eta, k } => {
+            Some(Interface { name: (*name).into(), kind: curves::InterfaceKind::Conductor { eta, k } })
+        }
+        _ => None,
+    };
+    METALS.iter().filter_map(interface).collect()
+}
+
+/// What the comment at the head of a scene file says, without the row it begins with.
+pub fn caption(text: &str) -> String {
     let lines = text.lines().take_while(|line| line.starts_with('#'));
     let comment = lines.map(|line| line.trim_start_matches('#').trim()).collect::<Vec<_>>().join(" ");
-    let Some((head, rest)) = comment.split_once(". ").filter(|(head, _)| head.starts_with("Row")) else {
-        return (None, comment);
-    };
-    let row = head.split(' ').nth(1).and_then(|number| number.parse().ok());
-    (row, rest.to_owned())
+    match comment.split_once(". ") {
+        Some((head, rest)) if head.starts_with("Row") => rest.to_owned(),
+        _ => comment,
+    }
 }

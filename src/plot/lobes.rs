@@ -1,8 +1,12 @@
 //! How materials reflect over angle: lobes, flat and in perspective, and directional albedo.
 
 use super::curves::direction;
-use super::figure::{Arrow, Axis, Body, Color, Curve, Facet, Figure, Frame, Mark, STEPS, Side, nice_step, palette};
-use super::shelf::Shelf;
+use super::figure::{
+    Arrow, Axis, Body, Color, Curve, Facet, Figure, Frame, Mark, PALETTE, STEPS, Side, nice_step, palette,
+};
+use super::shelf::{Shelf, shelf_of};
+use crate::bake::BakeError;
+use crate::scene::{Material, Model};
 use glam::DVec3;
 
 /// Grazing directions end this far from the horizon, degrees: models are zero at it.
@@ -87,6 +91,54 @@ pub fn albedo_figure(shelf: &Shelf, materials: &[usize]) -> Figure {
     };
     let note = "the part of light from everywhere that is reflected towards the viewer (luminance)";
     Figure { title: "Directional albedo".into(), note: note.into(), frame, curves }
+}
+
+/// Roughness of a material by its model's own name for it, in both directions; None where it has none.
+fn roughened(material: &Material, roughness: f32) -> Option<Material> {
+    let mut rough = material.clone();
+    match &mut rough.model {
+        Model::CookTorrance { lobes, .. } => {
+            lobes.iter_mut().for_each(|lobe| (lobe.alpha_u, lobe.alpha_v) = (roughness, roughness));
+        }
+        Model::Ward { alpha_u, alpha_v, .. }
+        | Model::RoughConductor { alpha_u, alpha_v, .. }
+        | Model::RoughDielectric { alpha_u, alpha_v, .. } => (*alpha_u, *alpha_v) = (roughness, roughness),
+        Model::Kelemen { alpha, .. } | Model::RoughPlastic { alpha, .. } => *alpha = roughness,
+        // Burley's roughness is the root of alpha.
+        Model::Principled(principled) => principled.roughness = libm::sqrtf(roughness),
+        _ => return None,
+    }
+    Some(rough)
+}
+
+/// Directional albedo against roughness alpha or m, for views at each of `angles` degrees (row 18); of each material that has a
+/// roughness, from .05 to 1.
+pub fn albedo_by_roughness_figure(materials: &[Material], angles: &[f64]) -> Result<Figure, BakeError> {
+    const STEPS: u16 = 19;
+    const SAMPLES: u32 = 1 << 12;
+    let roughness = |step: u16| 0.05 + 0.95 * f64::from(step) / f64::from(STEPS);
+    let mut curves: Vec<Curve> = Vec::new();
+    for material in materials {
+        let rough: Option<Vec<Material>> = (0..=STEPS).map(|i| roughened(material, roughness(i) as f32)).collect();
+        let Some(rough) = rough else { continue };
+        let shelf = shelf_of(rough)?;
+        for angle in angles {
+            let albedo = |i: u16| [roughness(i), shelf.albedo(usize::from(i), direction(*angle), SAMPLES)];
+            let (place, name) = (curves.len(), format!("{}, θ = {angle}°", material.name));
+            let points = (0..=STEPS).map(albedo).collect();
+            curves.push(Curve { name, color: palette(place), dashed: place >= PALETTE.len(), points });
+        }
+    }
+    let highest = curves.iter().map(Curve::highest).fold(1.0, f64::max);
+    let limit = vec![[0.0, 1.0], [1.0, 1.0]];
+    curves.push(Curve { name: "all of the light".into(), color: [150, 150, 150], dashed: true, points: limit });
+    let frame = Frame::Cartesian {
+        x: Axis { label: "roughness α".into(), low: 0.0, high: 1.0, step: 0.2 },
+        y: Axis::up_to("albedo", highest.min(4.0) * 1.05),
+        marks: Vec::new(),
+    };
+    let note = "the part of light from everywhere that is reflected towards a viewer at θ (luminance)";
+    Ok(Figure { title: "Directional albedo".into(), note: note.into(), frame, curves })
 }
 
 /// Rows and columns of a body's grid.

@@ -1,17 +1,19 @@
 //! Pictures of models: curves, lobes and colours, computed by the functions that render, as SVG, PNG or numbers.
 //!
-//! A plot is two steps: a function of `curves`, `lobes`, `edge` or `albedo` makes a [`Figure`], and [`render`] draws it.
+//! A plot is two steps: a function of `curves`, `lobes`, `albedo`, `edge` or `fit` makes a [`Figure`], and [`render`] draws it.
 
 pub mod canvas;
 pub mod curves;
 mod draw;
 pub mod edge;
 pub mod figure;
+pub mod fit;
 pub mod lecture;
 pub mod lobes;
 pub mod page;
 pub mod panels;
 pub mod shelf;
+mod simplex;
 
 pub use canvas::PlotError;
 pub use figure::Figure;

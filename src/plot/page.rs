@@ -1,85 +1,151 @@
 //! The gallery's page: one HTML file that needs nothing else.
 
+use super::lecture::{Row, row_of};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use pulldown_latex::config::DisplayMode;
+use pulldown_latex::{Parser, RenderConfig, Storage, push_mathml};
 
 /// What the page shows of one scene.
 pub struct Entry {
     /// The file's stem.
     pub name: String,
     pub row: Option<u32>,
+    /// The name without the row's number.
+    pub title: String,
     pub caption: String,
-    pub formula: Option<&'static str>,
-    /// A PNG file.
-    pub picture: Vec<u8>,
-    /// An SVG file.
-    pub plot: Option<String>,
+    /// PNG files and their labels; a picture that is not divided has one without.
+    pub pictures: Vec<(Option<String>, Vec<u8>)>,
+    /// Pictures in a row, where there is room for them.
+    pub columns: usize,
     /// The scene file.
     pub text: String,
 }
 
+/// A part of the page: a row of the lecture, or a scene that belongs to none.
+pub struct Part {
+    pub entries: Vec<Entry>,
+    /// SVG files.
+    pub plots: Vec<String>,
+}
+
+impl Part {
+    fn row(&self) -> Option<&'static Row> {
+        self.entries.first().and_then(|entry| entry.row).and_then(row_of)
+    }
+
+    /// The row's number and name, else the first scene's.
+    fn heading(&self) -> String {
+        let first = self.entries.first();
+        match (self.row(), first) {
+            (Some(row), _) => format!("{} · {}", row.number, escaped(row.title)),
+            (None, Some(entry)) => escaped(&entry.title),
+            (None, None) => String::new(),
+        }
+    }
+
+    fn id(&self) -> String {
+        self.entries.first().map_or(String::new(), |entry| match entry.row {
+            Some(row) => format!("row-{row}"),
+            None => escaped(&entry.name),
+        })
+    }
+}
+
 const STYLE: &str = "\
 :root{color-scheme:light}\
-body{margin:0 auto;padding:1rem;max-width:60rem;font:1rem/1.5 'Noto Sans',system-ui,sans-serif;color:#1e1e1e;background:#fff}\
-h1{font-size:1.6rem;line-height:1.2}h2{font-size:1.2rem;margin:0 0 .3rem}\
-section{border-top:1px solid #ccc;padding:1.2rem 0}\
-nav{line-height:2}nav a{margin-right:.8rem;white-space:nowrap}a{color:#0b57a4}\
-img,svg{display:block;max-width:100%;height:auto;margin:.6rem 0}\
-.plot{overflow-x:auto}.plot svg{min-width:36rem}\
-.formula{font-style:italic;background:#f4f4f4;padding:.5rem .7rem;overflow-wrap:anywhere}\
-pre{overflow-x:auto;background:#f4f4f4;padding:.7rem;font-size:.85rem}summary{cursor:pointer}";
+*{box-sizing:border-box}\
+body{margin:0 auto;padding:1rem;max-width:68rem;font:1rem/1.5 'Noto Sans',system-ui,sans-serif;color:#1e1e1e;background:#fff}\
+h1{font-size:1.8rem;line-height:1.2;margin:.5rem 0 1rem}h2{font-size:1.4rem;line-height:1.25;margin:0 0 .6rem}\
+h3{font-size:1.05rem;margin:1.6rem 0 .3rem}p{margin:.5rem 0;max-width:58rem}\
+section{border-top:1px solid #ccc;padding:1.6rem 0}\
+nav{columns:17rem;line-height:1.8}nav a{display:block}a{color:#0b57a4}\
+.formula{background:#f4f4f4;padding:.5rem .8rem;overflow-x:auto;overflow-y:hidden}\
+math{font-family:'STIX Two Math','Cambria Math','Latin Modern Math','DejaVu Math TeX Gyre','Noto Sans Math',math;font-size:1.15rem;margin:.45rem 0}math[display=block]{text-align:left;width:max-content}\
+.panels{display:grid;gap:.5rem;grid-template-columns:repeat(var(--columns),minmax(0,1fr));margin:.7rem 0}\
+figure{margin:0}figcaption{text-align:center;font-size:.95rem;line-height:1.3;padding:.2rem 0}\
+img,svg{display:block;max-width:100%;height:auto;margin:0 auto}\
+.panels.several img{width:100%}\
+.plots{display:grid;gap:1rem;grid-template-columns:repeat(auto-fit,minmax(min(100%,30rem),1fr));margin:1rem 0}\
+.plot{overflow-x:auto}.plot svg{min-width:30rem}\
+@media(max-width:40rem){.panels{grid-template-columns:repeat(var(--narrow),minmax(0,1fr));gap:.3rem}figcaption{font-size:.8rem}}\
+pre{overflow-x:auto;background:#f4f4f4;padding:.7rem;font-size:.85rem;line-height:1.4}summary{cursor:pointer;color:#555}";
 
 /// Text as HTML shows it.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// The row and the name; a number that the file's name begins with is that row's.
-fn heading(entry: &Entry) -> String {
-    match entry.row {
-        Some(row) => {
-            let name = entry.name.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start_matches('-');
-            format!("{row} · {}", escaped(name))
-        }
-        None => escaped(&entry.name),
-    }
+/// A formula in LaTeX as MathML. What is no LaTeX is shown in red.
+pub fn mathml(latex: &str) -> String {
+    let storage = Storage::new();
+    let config = RenderConfig { display_mode: DisplayMode::Block, ..RenderConfig::default() };
+    let mut math = String::new();
+    let pushed = push_mathml(&mut math, Parser::new(latex, &storage), config);
+    debug_assert!(pushed.is_ok(), "{latex}: {pushed:?}");
+    math
 }
 
-/// The page of `entries`, in their order.
-pub fn page(title: &str, entries: &[Entry]) -> String {
+/// The page of `parts`, in their order.
+pub fn page(title: &str, parts: &[Part]) -> String {
     let title = escaped(title);
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
          <style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n<nav>\n"
     );
-    for entry in entries {
-        page.push_str(&format!("<a href=\"#{}\">{}</a>\n", escaped(&entry.name), heading(entry)));
+    for part in parts {
+        page.push_str(&format!("<a href=\"#{}\">{}</a>\n", part.id(), part.heading()));
     }
     page.push_str("</nav>\n");
-    for entry in entries {
-        page.push_str(&section(entry));
+    for part in parts {
+        page.push_str(&section(part));
     }
     page.push_str("</body>\n</html>\n");
     page
 }
 
-fn section(entry: &Entry) -> String {
+fn section(part: &Part) -> String {
+    let mut html = format!("<section id=\"{}\">\n<h2>{}</h2>\n", part.id(), part.heading());
+    if let Some(row) = part.row() {
+        let formulae: String = row.formulae.iter().map(|latex| mathml(latex) + "\n").collect();
+        html.push_str(&format!("<div class=\"formula\">\n{formulae}</div>\n"));
+    }
+    for entry in &part.entries {
+        if part.entries.len() > 1 {
+            html.push_str(&format!("<h3>{}</h3>\n", escaped(&entry.title)));
+        }
+        html.push_str(&scene(entry));
+    }
+    // A narrow screen scrolls plots: smaller, their words could not be read.
+    let plots: String = part.plots.iter().map(|plot| format!("<div class=\"plot\">{plot}</div>\n")).collect();
+    if !plots.is_empty() {
+        html.push_str(&format!("<div class=\"plots\">\n{plots}</div>\n"));
+    }
+    html + "</section>\n"
+}
+
+fn scene(entry: &Entry) -> String {
     let name = escaped(&entry.name);
-    let mut html =
-        format!("<section id=\"{name}\">\n<h2>{}</h2>\n<p>{}</p>\n", heading(entry), escaped(&entry.caption));
-    if let Some(formula) = entry.formula {
-        html.push_str(&format!("<p class=\"formula\">{}</p>\n", escaped(formula)));
+    let several = if entry.pictures.len() > 1 { " several" } else { "" };
+    let columns = entry.columns.clamp(1, entry.pictures.len().max(1));
+    // On a telephone three small ones side by side compare better than large ones below each other.
+    let narrow = if columns > 3 { 2 } else { columns };
+    let mut html = format!(
+        "<p>{}</p>\n<div class=\"panels{several}\" style=\"--columns:{columns};--narrow:{narrow}\">\n",
+        escaped(&entry.caption)
+    );
+    for (label, png) in &entry.pictures {
+        let label = label.as_deref().map(escaped);
+        let alt = label.as_ref().map_or_else(|| name.clone(), |label| format!("{name}: {label}"));
+        let caption = label.map_or(String::new(), |label| format!("<figcaption>{label}</figcaption>"));
+        let picture = STANDARD.encode(png);
+        html.push_str(&format!(
+            "<figure><img alt=\"{alt}\" src=\"data:image/png;base64,{picture}\">{caption}</figure>\n"
+        ));
     }
-    let picture = STANDARD.encode(&entry.picture);
-    html.push_str(&format!("<img alt=\"{name}\" src=\"data:image/png;base64,{picture}\">\n"));
-    if let Some(plot) = &entry.plot {
-        // A narrow screen scrolls it: smaller, its words could not be read.
-        html.push_str(&format!("<div class=\"plot\">{plot}</div>\n"));
-    }
-    html.push_str(&format!(
-        "<details>\n<summary>{name}.toml</summary>\n<pre>{}</pre>\n</details>\n</section>\n",
+    html + &format!(
+        "</div>\n<details>\n<summary>{name}.toml</summary>\n<pre>{}</pre>\n</details>\n",
         escaped(&entry.text)
-    ));
-    html
+    )
 }

@@ -1,11 +1,11 @@
 //! Materials as the renderer evaluates them: baked, and asked by name.
 
 use crate::bake::{BakeError, SceneData, bake};
-use crate::layout::{MODEL_BLEND, SAMPLER_SOBOL};
+use crate::layout::{self, MATERIAL_ANISOTROPIC, MODEL_BLEND, SAMPLER_SOBOL};
 use crate::scene::{Camera, Material, Projection, Scene};
 use crate::shading::material::{eval_material, sample_material};
 use crate::shading::sampling::{SampleKey, sample_1d, sample_2d};
-use crate::shading::spectrum::spectrum_luminance;
+use crate::shading::spectrum::{Spectrum, spectrum_luminance};
 use glam::{Vec2, Vec3};
 use std::path::Path;
 
@@ -52,12 +52,42 @@ impl Shelf {
     /// f |cos theta_i| of material number `index`, luminance per steradian. Directions leave the surface, z is its
     /// normal. Textures count as 1.
     pub fn eval(&self, index: usize, wo: Vec3, wi: Vec3) -> f64 {
+        f64::from(spectrum_luminance(self.spectrum(index, wo, wi)))
+    }
+
+    /// The same, linear Rec. 709.
+    pub fn eval_rgb(&self, index: usize, wo: Vec3, wi: Vec3) -> [f64; 3] {
+        let value = self.spectrum(index, wo, wi);
+        [value.x, value.y, value.z].map(f64::from)
+    }
+
+    fn spectrum(&self, index: usize, wo: Vec3, wi: Vec3) -> Spectrum {
         let material = &self.data.materials[index];
         if material.model == MODEL_BLEND {
-            let (first, weight) = (material.table as usize, f64::from(material.extra));
-            return (1.0 - weight) * self.eval(first, wo, wi) + weight * self.eval(first + 1, wo, wi);
+            let (first, weight) = (material.table as usize, material.extra);
+            return self.spectrum(first, wo, wi) * (1.0 - weight) + self.spectrum(first + 1, wo, wi) * weight;
         }
-        f64::from(spectrum_luminance(eval_material(&self.data.view(), material, wo, wi)))
+        eval_material(&self.data.view(), material, wo, wi)
+    }
+
+    /// Material number `index` as the renderer reads it.
+    pub fn record(&self, index: usize) -> layout::Material {
+        self.data.materials[index]
+    }
+
+    /// `eval` of a record, green.
+    pub fn eval_record(&self, record: &layout::Material, wo: Vec3, wi: Vec3) -> f64 {
+        f64::from(eval_material(&self.data.view(), record, wo, wi).y)
+    }
+
+    /// Whether turning the surface changes what material number `index` reflects.
+    pub fn is_anisotropic(&self, index: usize) -> bool {
+        let material = &self.data.materials[index];
+        if material.model == MODEL_BLEND {
+            let first = material.table as usize;
+            return self.is_anisotropic(first) || self.is_anisotropic(first + 1);
+        }
+        material.flags & MATERIAL_ANISOTROPIC != 0
     }
 
     /// The part of white light from everywhere that goes to `wo`, by sampling: the mean weight of `count` samples,

@@ -1,6 +1,7 @@
 //! Backends. They only *schedule* the pure steps of `transport`; what is computed is the same.
 
 pub mod cpu;
+pub mod team;
 pub mod vulkan;
 
 use crate::film::{Film, Rect};
@@ -52,7 +53,7 @@ pub struct Bounce {
 
 /// How a call reports and is asked to stop.
 pub struct Watch<'a> {
-    /// Set from outside: abandon the call (the film is then not to be used).
+    /// Set from outside: abandon the call.
     pub abort: &'a AtomicBool,
     /// Samples finished since the last call of this function (pixels times samples).
     pub advance: &'a (dyn Fn(u64) + Sync),
@@ -77,7 +78,7 @@ pub trait Renderer {
     /// "cpu (8 threads)" or the device's name and driver.
     fn name(&self) -> String;
 
-    /// Adds the job's samples to `film`, whose crop contains the job's.
+    /// Adds the job's samples to `film`, whose crop contains the job's. On an error the film is as it was.
     fn accumulate(&mut self, job: &Job, film: &mut Film, watch: &Watch) -> Result<Counters, RenderError>;
 
     /// Every step of one sample of one pixel, ordered by (depth, path id).

@@ -25,7 +25,7 @@ pub use mesh::Mesh;
 pub use settings::{
     Background, Environment, Film, Filter, Integrator, RenderSettings, Sampler, Shading, Shadows, ToneMap, Window,
 };
-pub use table::Table;
+pub use table::{DirectionalTable, Table};
 pub use texture::{Pattern, PatternKind, Texture, TextureData, Wrap};
 pub use transform::Transform;
 

@@ -9,7 +9,7 @@ use crate::layout::{
     MATERIAL_FILTERED, MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE,
     MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR, MODEL_NULL,
     MODEL_OREN_NAYAR, MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC,
-    MODEL_ROUGH_PLASTIC, MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneView,
+    MODEL_ROUGH_PLASTIC, MODEL_TABULATED, MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneView,
 };
 use crate::shading::ashikhmin::{eval_ashikhmin, pdf_ashikhmin, sample_ashikhmin};
 use crate::shading::blinn_phong::{eval_blinn_phong, pdf_blinn_phong, sample_blinn_phong};
@@ -31,6 +31,7 @@ use crate::shading::principled::{eval_principled, pdf_principled, sample_princip
 use crate::shading::rough_conductor::{eval_rough_conductor, pdf_rough_conductor, sample_rough_conductor};
 use crate::shading::rough_dielectric::{eval_rough_dielectric, pdf_rough_dielectric, sample_rough_dielectric};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_zero};
+use crate::shading::tabulated::{eval_tabulated, pdf_tabulated, sample_tabulated};
 use crate::shading::ward::{eval_ward, pdf_ward, sample_ward};
 use glam::{Vec2, Vec3, Vec4};
 
@@ -53,6 +54,7 @@ pub fn eval_material(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3)
         MODEL_ROUGH_PLASTIC => eval_rough_plastic(scene, material, wo, wi),
         MODEL_PRINCIPLED => eval_principled(scene, material, wo, wi),
         MODEL_MEASURED => eval_measured(scene, material, wo, wi),
+        MODEL_TABULATED => eval_tabulated(scene, material, wo, wi),
         _ => spectrum_zero(),
     }
 }
@@ -75,6 +77,7 @@ pub fn pdf_material(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) 
         MODEL_ROUGH_PLASTIC => pdf_rough_plastic(scene, material, wo, wi),
         MODEL_PRINCIPLED => pdf_principled(scene, material, wo, wi),
         MODEL_MEASURED => pdf_measured(scene, material, wo, wi),
+        MODEL_TABULATED => pdf_tabulated(scene, material, wo, wi),
         _ => 0.0,
     }
 }
@@ -94,6 +97,7 @@ pub fn sample_direction(scene: &SceneView, material: &Material, wo: Vec3, u: Vec
         MODEL_ROUGH_CONDUCTOR => sample_rough_conductor(scene, material, wo, u, u_lobe),
         MODEL_ROUGH_PLASTIC => sample_rough_plastic(scene, material, wo, u, u_lobe),
         MODEL_MEASURED => sample_measured(scene, material, wo, u, u_lobe),
+        MODEL_TABULATED => sample_tabulated(scene, material, wo, u, u_lobe),
         _ => no_direction(),
     }
 }

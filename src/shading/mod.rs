@@ -52,6 +52,7 @@ pub mod rough_dielectric;
 pub mod sampling;
 pub mod slide;
 pub mod spectrum;
+pub mod tabulated;
 pub mod texture;
 pub mod ward;
 pub mod warp;

@@ -30,7 +30,8 @@
 use super::ray::LevelRay;
 use crate::layout::Node;
 use crate::shading::math::{max_, min_};
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3};
+use wide::{f32x4, f32x8, i16x8, i32x8, u8x16};
 
 /// 16 u: see the bound, step 3.
 const SLACK: f32 = 9.536743e-7;
@@ -66,76 +67,84 @@ pub fn box_interval(ray: &LevelRay, low: Vec3, high: Vec3) -> Vec2 {
     Vec2::new(near, far)
 }
 
-/// Four quantised planes of one word, child 0 in the lowest byte. By way of signed integers: many devices have no
-/// instruction for the unsigned conversion.
+/// For each octant and set of inner children, by slot, the same set by priority: slot xor octant (Ylitie et al. 2017,
+/// section 3.3). Rust only: devices shift the bits into place one by one.
+const PRIORITIES: [[u8; 256]; 8] = {
+    let mut table = [[0; 256]; 8];
+    let mut at = 0;
+    while at < 8 * 256 * 8 {
+        let (octant, slots, slot) = (at >> 11, (at >> 3) & 255, at & 7);
+        table[octant][slots] |= ((slots >> slot & 1) << (slot ^ octant)) as u8;
+        at += 1;
+    }
+    table
+};
+
+/// Eight quantised planes, child 0 in the lowest byte.
 #[inline(always)]
-fn approx_planes(word: u32) -> Vec4 {
-    Vec4::new((word & 255) as f32, ((word >> 8) & 255) as f32, ((word >> 16) & 255) as f32, (word >> 24) as f32)
+fn approx_planes(words: [u32; 2]) -> f32x8 {
+    let bytes: u8x16 = bytemuck::cast([words[0].to_le(), words[1].to_le(), 0, 0]);
+    f32x8::from_i32x8(i32x8::from_i16x8(i16x8::from_u8x16_low(bytes)))
 }
 
-/// The bits that four children set if the ray meets their boxes. `meta`: their bytes of `child_meta`;
-/// `near`, `far`: their intervals. Inner children set the bit of their priority in the top byte (Ylitie et al. 2017,
-/// section 3.3: slot xor octant), leaves one bit a primitive in the lower 24.
+/// The bits that eight children set if the ray meets their boxes. `near`, `far`: their intervals. Inner children set the bit of
+/// their priority in the top byte (Ylitie et al. 2017, section 3.3: slot xor octant), leaves one bit a primitive in the
+/// lower 24.
 #[inline(always)]
-fn approx_hit_bits(meta: u32, octant: u32, near: Vec4, far: Vec4) -> u32 {
-    let is_inner = (meta & (meta << 1)) & 0x1010_1010;
-    let inner_mask = (is_inner >> 4) * 255;
-    let bit_index = (meta ^ (octant & inner_mask)) & 0x1f1f_1f1f;
-    let child_bits = (meta >> 5) & 0x0707_0707;
-    let mut hits = 0;
+fn approx_hit_bits(node: &Node, octant: u32, near: f32x8, far: f32x8) -> u32 {
     // Written as "unless it misses": a NaN would be visited.
-    if !(near.x > far.x) {
-        hits |= (child_bits & 255) << (bit_index & 31);
-    }
-    if !(near.y > far.y) {
-        hits |= ((child_bits >> 8) & 255) << ((bit_index >> 8) & 31);
-    }
-    if !(near.z > far.z) {
-        hits |= ((child_bits >> 16) & 255) << ((bit_index >> 16) & 31);
-    }
-    if !(near.w > far.w) {
-        hits |= (child_bits >> 24) << ((bit_index >> 24) & 31);
+    let met = !near.simd_gt(far).to_bitmask() & 255;
+    let inner = node.exponents_imask >> 24;
+    let mut hits = u32::from(PRIORITIES[(octant & 7) as usize][(met & inner) as usize]) << 24;
+    let meta = u64::from(node.child_meta[0]) | u64::from(node.child_meta[1]) << 32;
+    let mut leaves = met & !inner;
+    while leaves != 0 {
+        let byte = (meta >> (8 * leaves.trailing_zeros())) as u32;
+        hits |= ((byte >> 5) & 7) << (byte & 31);
+        leaves &= leaves - 1;
     }
     hits
 }
 
 /// Which of a node's eight children the ray may meet at a t from 0 to `t_max` (both included), as the bits of
-/// `approx_hit_bits`. `margin`: relative widening, `MESH_MARGIN` or the header's `top_margin`.
+/// `approx_hit_bits`. `margin`: relative widening, `MESH_MARGIN` or the header's `top_margin`. All eight at a time here.
 /// Source: Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
 /// section 3; the widening is ours (the bound above).
 #[inline(always)]
 #[allow(clippy::disallowed_methods, reason = "it chooses what to visit, never what is hit")]
 pub fn approx_intersect_node(node: &Node, ray: &LevelRay, margin: f32, t_max: f32) -> u32 {
+    let lanes = |v: Vec3| f32x4::new([v.x, v.y, v.z, 0.0]);
+    let splat = f32x8::splat;
     let exponents = node.exponents_imask;
-    let step = Vec3::new(
-        f32::from_bits((exponents & 255) << 23),
-        f32::from_bits(((exponents >> 8) & 255) << 23),
-        f32::from_bits(((exponents >> 16) & 255) << 23),
-    );
-    let corner = node.origin - ray.origin;
-    let extent = corner.abs() + step * 255.0;
-    let error = ray.inverse.abs() * (extent.x.max(extent.y).max(extent.z) * margin);
-    let scale = step * ray.inverse;
-    let start = corner * ray.inverse;
-    let low = start - error;
-    let high = start + error;
+    let step = f32x4::new([
+        f32::from_bits((exponents & 0xff) << 23),
+        f32::from_bits((exponents & 0xff00) << 15),
+        f32::from_bits((exponents & 0xff_0000) << 7),
+        0.0,
+    ]);
+    let inverse = lanes(ray.inverse);
+    let corner = lanes(node.origin) - lanes(ray.origin);
+    let extent = corner.abs() + step * f32x4::splat(255.0);
+    let [x, y, z, _] = extent.to_array();
+    let largest = extent.fast_max(f32x4::new([y, z, x, 0.0])).fast_max(f32x4::new([z, x, y, 0.0]));
+    let error = (inverse.abs() * f32x4::splat(margin)) * largest;
+    let scale = (step * inverse).to_array();
+    let start = corner * inverse;
+    let low = (start - error).to_array();
+    let high = (start + error).to_array();
 
     // Near and far planes by the sign of the direction; no swapping per child.
-    let (near_x, far_x) = if ray.inverse.x < 0.0 { (node.max_x, node.min_x) } else { (node.min_x, node.max_x) };
-    let (near_y, far_y) = if ray.inverse.y < 0.0 { (node.max_y, node.min_y) } else { (node.min_y, node.max_y) };
-    let (near_z, far_z) = if ray.inverse.z < 0.0 { (node.max_z, node.min_z) } else { (node.min_z, node.max_z) };
+    let (near_x, far_x) = if ray.inverse.x < 0.0 { (&node.max_x, &node.min_x) } else { (&node.min_x, &node.max_x) };
+    let (near_y, far_y) = if ray.inverse.y < 0.0 { (&node.max_y, &node.min_y) } else { (&node.min_y, &node.max_y) };
+    let (near_z, far_z) = if ray.inverse.z < 0.0 { (&node.max_z, &node.min_z) } else { (&node.min_z, &node.max_z) };
 
-    let mut hits = 0;
-    for half in 0..2 {
-        let near = (approx_planes(near_x[half]) * scale.x + low.x)
-            .max(approx_planes(near_y[half]) * scale.y + low.y)
-            .max(approx_planes(near_z[half]) * scale.z + low.z)
-            .max(Vec4::ZERO);
-        let far = (approx_planes(far_x[half]) * scale.x + high.x)
-            .min(approx_planes(far_y[half]) * scale.y + high.y)
-            .min(approx_planes(far_z[half]) * scale.z + high.z)
-            .min(Vec4::splat(t_max));
-        hits |= approx_hit_bits(node.child_meta[half], ray.octant, near, far);
-    }
-    hits
+    let near = (approx_planes(*near_x) * splat(scale[0]) + splat(low[0]))
+        .fast_max(approx_planes(*near_y) * splat(scale[1]) + splat(low[1]))
+        .fast_max(approx_planes(*near_z) * splat(scale[2]) + splat(low[2]))
+        .fast_max(f32x8::ZERO);
+    let far = (approx_planes(*far_x) * splat(scale[0]) + splat(high[0]))
+        .fast_min(approx_planes(*far_y) * splat(scale[1]) + splat(high[1]))
+        .fast_min(approx_planes(*far_z) * splat(scale[2]) + splat(high[2]))
+        .fast_min(splat(t_max));
+    approx_hit_bits(node, ray.octant, near, far)
 }

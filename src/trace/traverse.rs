@@ -11,11 +11,13 @@ use super::box_::{MESH_MARGIN, approx_intersect_node};
 use super::ray::{LevelRay, object_origin, prepare_ray, transform_vector, within_reach};
 use super::sphere::intersect_sphere;
 use super::triangle::intersect_triangle;
-use crate::layout::{
-    Hit, INSTANCE_NO_SHADOW, INVALID, KIND_SPHERE, Ray, STACK_SIZE, SceneView, load_instance, load_node,
-    load_top_instance, load_triangle,
-};
+use crate::layout::{Hit, INSTANCE_NO_SHADOW, INVALID, KIND_SPHERE, Ray, STACK_SIZE, SceneView, load_top_instance};
+use arrayvec::ArrayVec;
 use glam::UVec2;
+use pulp::{Arch, NullaryFnOnce};
+
+/// Groups put aside. Bake has proved that it is high enough.
+type Stack = ArrayVec<UVec2, { STACK_SIZE as usize }>;
 
 /// Groups with no child left are at most this.
 const GROUP_EMPTY: u32 = 0x00ff_ffff;
@@ -29,19 +31,25 @@ fn is_closer(t: f32, instance: u32, primitive: u32, hit: &Hit) -> bool {
     t < hit.t || (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)))
 }
 
+/// Index of the highest bit of 1 <= x < 2^24.
+#[inline(always)]
+fn highest_bit(x: u32) -> u32 {
+    31 - x.leading_zeros()
+}
+
 /// Takes the nearest child out of a group: its index in the node array.
 #[inline(always)]
 fn take_child(group: &mut UVec2, octant: u32) -> u32 {
-    let bit = 31 - group.y.leading_zeros();
-    group.y &= !(1 << bit);
-    let slot = (bit - 24) ^ (octant & 255);
+    let bit = highest_bit(group.y >> 24);
+    group.y &= !(0x0100_0000 << bit);
+    let slot = bit ^ (octant & 255);
     group.x + (group.y & !(0xffff_ffff << slot)).count_ones()
 }
 
 /// Takes one primitive out of a primitive group: its index in its array.
 #[inline(always)]
 fn take_primitive(group: &mut UVec2) -> u32 {
-    let bit = 31 - group.y.leading_zeros();
+    let bit = highest_bit(group.y);
     group.y &= !(1 << bit);
     group.x + bit
 }
@@ -49,11 +57,11 @@ fn take_primitive(group: &mut UVec2) -> u32 {
 /// Tests triangle `index` of the array; `hit` becomes the closer of both.
 #[inline(always)]
 fn test_triangle(scene: &SceneView, ray: &Ray, level: &LevelRay, instance: u32, index: u32, hit: &mut Hit) {
-    let triangle = load_triangle(scene, index);
+    let triangle = &scene.triangles[index as usize];
     if instance == ray.skip_instance && triangle.primitive == ray.skip_primitive {
         return;
     }
-    let found = intersect_triangle(level, triangle.v0, triangle.v1, triangle.v2);
+    let found = intersect_triangle(level, &triangle.v0, &triangle.v1, &triangle.v2);
     if found.x > 0.0 && is_closer(found.x, instance, triangle.primitive, hit) {
         hit.t = found.x;
         hit.b1 = found.y;
@@ -92,27 +100,25 @@ fn walk_mesh(
     hit: &mut Hit,
     deepest: &mut u32,
 ) {
-    let mut stack = [UVec2::ZERO; STACK_SIZE as usize];
-    let mut height: u32 = 0;
+    let mut stack = Stack::new();
     let mut group = UVec2::new(root, GROUP_ROOT);
     let mut walking = true;
     while walking {
         let index = take_child(&mut group, level.octant);
         if group.y > GROUP_EMPTY {
-            push(&mut stack, &mut height, group, deepest);
+            push(&mut stack, group, deepest);
         }
-        let node = load_node(scene, index);
-        let hits = approx_intersect_node(&node, level, MESH_MARGIN, hit.t);
+        let node = &scene.nodes[index as usize];
+        let hits = approx_intersect_node(node, level, MESH_MARGIN, hit.t);
         group = UVec2::new(node.child_base, (hits & 0xff00_0000) | (node.exponents_imask >> 24));
         let mut triangles = UVec2::new(node.primitive_base, hits & GROUP_EMPTY);
-        while triangles.y != 0 {
+        while triangles.y != 0 && !(any && hit.instance != INVALID) {
             test_triangle(scene, ray, level, instance, take_primitive(&mut triangles), hit);
         }
         if group.y <= GROUP_EMPTY {
-            walking = height != 0;
-            if walking {
-                height -= 1;
-                group = stack[height as usize];
+            match stack.pop() {
+                Some(next) => group = next,
+                None => walking = false,
             }
         }
         walking = walking && !(any && hit.instance != INVALID);
@@ -127,70 +133,104 @@ fn traverse(scene: &SceneView, ray: &Ray, any: bool, casting: bool, deepest: &mu
     if scene.header.top_root == INVALID || !within_reach(ray.origin) {
         return hit;
     }
-    let mut stack = [UVec2::ZERO; STACK_SIZE as usize];
-    let mut height: u32 = 0;
+    // A lone instance needs no walk to be found.
+    if scene.top_instances.len() == 1 {
+        enter_instance(scene, ray, 0, any, casting, &mut hit, deepest);
+        return hit;
+    }
+    let mut stack = Stack::new();
     let world = prepare_ray(ray.origin, ray.direction);
     let mut group = UVec2::new(scene.header.top_root, GROUP_ROOT);
     let mut instances = UVec2::ZERO;
     let mut walking = true;
     while walking {
         // Nodes until there is an instance.
-        while instances.y == 0 && (group.y > GROUP_EMPTY || height != 0) {
-            if group.y <= GROUP_EMPTY {
-                height -= 1;
-                group = stack[height as usize];
+        while instances.y == 0 && (group.y > GROUP_EMPTY || !stack.is_empty()) {
+            if group.y <= GROUP_EMPTY
+                && let Some(next) = stack.pop()
+            {
+                group = next;
             }
             let index = take_child(&mut group, world.octant);
             if group.y > GROUP_EMPTY {
-                push(&mut stack, &mut height, group, deepest);
+                push(&mut stack, group, deepest);
             }
-            let node = load_node(scene, index);
-            let hits = approx_intersect_node(&node, &world, scene.header.top_margin, hit.t);
+            let node = &scene.nodes[index as usize];
+            let hits = approx_intersect_node(node, &world, scene.header.top_margin, hit.t);
             group = UVec2::new(node.child_base, (hits & 0xff00_0000) | (node.exponents_imask >> 24));
             instances = UVec2::new(node.primitive_base, hits & GROUP_EMPTY);
         }
 
         if instances.y != 0 {
-            let id = load_top_instance(scene, take_primitive(&mut instances));
-            let record = load_instance(scene, id);
-            let origin = object_origin(&record, ray.origin);
-            if !(casting && (record.flags & INSTANCE_NO_SHADOW) != 0) && within_reach(origin) {
-                let level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
-                if record.kind == KIND_SPHERE {
-                    test_sphere(ray, &level, id, &mut hit);
-                } else {
-                    walk_mesh(scene, ray, &level, id, record.root, any, &mut hit, deepest);
-                }
-            }
+            enter_instance(scene, ray, take_primitive(&mut instances), any, casting, &mut hit, deepest);
         }
-        walking = (instances.y != 0 || group.y > GROUP_EMPTY || height != 0) && !(any && hit.instance != INVALID);
+        walking = (instances.y != 0 || group.y > GROUP_EMPTY || !stack.is_empty()) && !(any && hit.instance != INVALID);
     }
     hit
 }
 
-/// Puts a group aside. Bake has proved that the stack is high enough.
+/// Tests what stands at `place` of the top level's order; `hit` becomes the closer of it and what is found.
 #[inline(always)]
-fn push(stack: &mut [UVec2; STACK_SIZE as usize], height: &mut u32, group: UVec2, deepest: &mut u32) {
-    debug_assert!(*height < STACK_SIZE, "traversal stack overflows");
-    stack[*height as usize] = group;
-    *height += 1;
-    *deepest = (*deepest).max(*height);
+fn enter_instance(
+    scene: &SceneView,
+    ray: &Ray,
+    place: u32,
+    any: bool,
+    casting: bool,
+    hit: &mut Hit,
+    deepest: &mut u32,
+) {
+    let id = load_top_instance(scene, place);
+    let record = &scene.instances[id as usize];
+    let origin = object_origin(record, ray.origin);
+    if (casting && (record.flags & INSTANCE_NO_SHADOW) != 0) || !within_reach(origin) {
+        return;
+    }
+    let level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
+    if record.kind == KIND_SPHERE {
+        test_sphere(ray, &level, id, hit);
+    } else {
+        walk_mesh(scene, ray, &level, id, record.root, any, hit, deepest);
+    }
+}
+
+/// Puts a group aside.
+#[inline(always)]
+fn push(stack: &mut Stack, group: UVec2, deepest: &mut u32) {
+    stack.push(group);
+    *deepest = (*deepest).max(stack.len() as u32);
+}
+
+/// One call of `traverse`, compiled for each set of vector instructions that this machine may have and run with the best it
+/// has: the same bits, since no compiler may fuse or reorder what is written. Rust only.
+struct Walk<'a, const ANY: bool, const CASTING: bool> {
+    scene: &'a SceneView<'a>,
+    ray: &'a Ray,
+}
+
+impl<const ANY: bool, const CASTING: bool> NullaryFnOnce for Walk<'_, ANY, CASTING> {
+    type Output = Hit;
+
+    #[inline(always)]
+    fn call(self) -> Hit {
+        traverse(self.scene, self.ray, ANY, CASTING, &mut 0)
+    }
 }
 
 /// The closest hit of a ray at 0 < t <= t_max, with ties in t to the lower (instance, primitive);
 /// `instance == INVALID` for none.
 pub fn trace_closest(scene: &SceneView, ray: &Ray) -> Hit {
-    traverse(scene, ray, false, false, &mut 0)
+    Arch::new().dispatch(Walk::<false, false> { scene, ray })
 }
 
 /// Whether anything that casts shadows lies at 0 < t <= t_max.
 pub fn trace_any(scene: &SceneView, ray: &Ray) -> bool {
-    traverse(scene, ray, true, true, &mut 0).instance != INVALID
+    Arch::new().dispatch(Walk::<true, true> { scene, ray }).instance != INVALID
 }
 
 /// The closest hit of what casts shadows, as `trace_closest`.
 pub fn trace_occluder(scene: &SceneView, ray: &Ray) -> Hit {
-    traverse(scene, ray, false, true, &mut 0)
+    Arch::new().dispatch(Walk::<false, true> { scene, ray })
 }
 
 /// Stack entries that the ray's closest hit needed: what bake's `stack_depth` bounds. Rust only, for tests.

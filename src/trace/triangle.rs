@@ -4,18 +4,22 @@ use super::box_::box_interval;
 use super::ray::{LevelRay, component};
 use crate::shading::math::{clamp_, max_, min_, rcp};
 use glam::Vec3;
+use wide::f32x4;
 
 /// Edge functions smaller than this (2^-86) count as 0, "on the edge": their products may have lost bits to subnormals.
 const EDGE_LEAST: f32 = 1.2924697e-26;
 
 const TRIANGLE_MISS: Vec3 = Vec3::new(-1.0, 0.0, 0.0);
 
-/// Twice the signed area of (p, q) as seen along the ray. `signed_area(q, p)` is exactly its negative, so a ray
-/// between two triangles that share an edge is on one side for one of them.
+/// Twice the signed areas of (c, b), (a, c) and (b, a) as seen along the ray, of the corners in lanes 0 to 2 of `x` and `y`;
+/// the device computes them one by one. The area of (q, p) is exactly the negative of that of (p, q), so a ray between two
+/// triangles that share an edge is on one side for one of them.
 #[inline(always)]
-fn signed_area(px: f32, py: f32, qx: f32, qy: f32) -> f32 {
-    let area = px * qy - py * qx;
-    if area.abs() < EDGE_LEAST { 0.0 } else { area }
+fn signed_area(x: f32x4, y: f32x4) -> f32x4 {
+    let p = |v: f32x4| f32x4::new([v.to_array()[2], v.to_array()[0], v.to_array()[1], 0.0]);
+    let q = |v: f32x4| f32x4::new([v.to_array()[1], v.to_array()[2], v.to_array()[0], 0.0]);
+    let area = p(x) * q(y) - p(y) * q(x);
+    area & !area.abs().simd_lt(f32x4::splat(EDGE_LEAST))
 }
 
 /// Where the ray meets the triangle `v0`, `v1`, `v2` (same space as the ray): (t, b1, b2) with the weights of corners
@@ -25,27 +29,25 @@ fn signed_area(px: f32, py: f32, qx: f32, qy: f32) -> f32 {
 /// precision (single precision never gets a sign wrong, only to 0). t is kept in the interval of the triangle's own
 /// box (`box_interval`), where it is except for triangles seen so edge-on that their weights are rounding noise.
 #[inline(always)]
-pub fn intersect_triangle(ray: &LevelRay, v0: Vec3, v1: Vec3, v2: Vec3) -> Vec3 {
-    let a = v0 - ray.origin;
-    let b = v1 - ray.origin;
-    let c = v2 - ray.origin;
+pub fn intersect_triangle(ray: &LevelRay, v0: &Vec3, v1: &Vec3, v2: &Vec3) -> Vec3 {
+    let corners: [&[f32; 3]; 3] = [v0.as_ref(), v1.as_ref(), v2.as_ref()];
+    let along = |k: u32| {
+        let k = (k as usize).min(2);
+        let origin = f32x4::splat(component(ray.origin, k as u32));
+        f32x4::new([corners[0][k], corners[1][k], corners[2][k], 0.0]) - origin
+    };
     // Section 3.3: shear and permute.
-    let az = component(a, ray.kz);
-    let bz = component(b, ray.kz);
-    let cz = component(c, ray.kz);
-    let ax = component(a, ray.kx) - ray.sx * az;
-    let ay = component(a, ray.ky) - ray.sy * az;
-    let bx = component(b, ray.kx) - ray.sx * bz;
-    let by = component(b, ray.ky) - ray.sy * bz;
-    let cx = component(c, ray.kx) - ray.sx * cz;
-    let cy = component(c, ray.ky) - ray.sy * cz;
+    let z = along(ray.kz);
+    let x = along(ray.kx) - f32x4::splat(ray.sx) * z;
+    let y = along(ray.ky) - f32x4::splat(ray.sy) * z;
     // Section 3.4: scaled barycentric coordinates.
-    let u = signed_area(cx, cy, bx, by);
-    let v = signed_area(ax, ay, cx, cy);
-    let w = signed_area(bx, by, ax, ay);
-    if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+    let areas = signed_area(x, y);
+    let negative = areas.simd_lt(f32x4::ZERO).to_bitmask();
+    let positive = areas.simd_gt(f32x4::ZERO).to_bitmask();
+    if negative != 0 && positive != 0 {
         return TRIANGLE_MISS;
     }
+    let [u, v, w, _] = areas.to_array();
     let sum = (u + v) + w;
     if sum == 0.0 {
         return TRIANGLE_MISS;
@@ -55,6 +57,8 @@ pub fn intersect_triangle(ray: &LevelRay, v0: Vec3, v1: Vec3, v2: Vec3) -> Vec3 
     let b0 = min_(u * scale, 1.0);
     let b1 = min_(v * scale, 1.0);
     let b2 = min_(w * scale, 1.0);
+    let [az, bz, cz, _] = z.to_array();
+    let (a, b, c) = (*v0 - ray.origin, *v1 - ray.origin, *v2 - ray.origin);
     let low = Vec3::new(min_(min_(a.x, b.x), c.x), min_(min_(a.y, b.y), c.y), min_(min_(a.z, b.z), c.z));
     let high = Vec3::new(max_(max_(a.x, b.x), c.x), max_(max_(a.y, b.y), c.y), max_(max_(a.z, b.z), c.z));
     let interval = box_interval(ray, low, high);

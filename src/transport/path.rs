@@ -203,9 +203,9 @@ pub fn shade_path(
     let filtered = scene.header.shadows == SHADOWS_FILTERED;
     // How far before the ray's origin its direction was drawn.
     let mut passed = 0.0;
-    if filtered {
-        passed = if path.depth > 0 { path.coverage } else { 0.0 };
-        path.coverage = if path.depth > 0 { 0.0 } else { path.coverage };
+    if filtered && path.depth > 0 {
+        passed = path.coverage;
+        path.coverage = 0.0;
     }
     if scene.header.hide_emitters != 0 && path.depth == 0 && emission_material(material) != Vec3::ZERO {
         path.path_id = hash_combine(path.path_id, LOBE_THROUGH);

@@ -76,27 +76,26 @@ pub fn material_at(
     let mut material = load_material(scene, surface.material);
     let mut u = if material.model == MODEL_BLEND { sample_1d(key, dimension) } else { 0.0 };
     let mut covered = 1.0;
-    let mut level = 0;
-    let mut blends = true;
-    while blends {
+    for level in 0..MAX_LEAVES {
         material.color *= surface.color;
         material = apply_textures(scene, material, direction, hit, surface);
-        level += 1;
         // Where a blend has holes, what it blends has them too.
-        material.k_t = if covered < 1.0 { 1.0 - covered * (1.0 - material.k_t) } else { material.k_t };
-        // Bake lets no blend be deeper.
-        blends = material.model == MODEL_BLEND && level < MAX_LEAVES;
-        if blends {
-            covered = 1.0 - material.k_t;
-            let by_side = (material.flags & MATERIAL_BY_SIDE) != 0;
-            let weight = clamp_(material.extra, 0.0, 1.0);
-            let second = if by_side { dot3(surface.normal_geometric, direction) > 0.0 } else { u < weight };
-            // What is left of u is as random again.
-            let rest = if second { div(u, weight) } else { div(u - weight, 1.0 - weight) };
-            u = if by_side { u } else { rest };
-            surface.material = if second { material.table + 1 } else { material.table };
-            material = load_material(scene, surface.material);
+        if covered < 1.0 {
+            material.k_t = 1.0 - covered * (1.0 - material.k_t);
         }
+        // Bake lets no blend be deeper.
+        if material.model != MODEL_BLEND || level + 1 == MAX_LEAVES {
+            break;
+        }
+        covered = 1.0 - material.k_t;
+        let by_side = (material.flags & MATERIAL_BY_SIDE) != 0;
+        let weight = clamp_(material.extra, 0.0, 1.0);
+        let second = if by_side { dot3(surface.normal_geometric, direction) > 0.0 } else { u < weight };
+        // What is left of u is as random again.
+        let rest = if second { div(u, weight) } else { div(u - weight, 1.0 - weight) };
+        u = if by_side { u } else { rest };
+        surface.material = if second { material.table + 1 } else { material.table };
+        material = load_material(scene, surface.material);
     }
     material
 }

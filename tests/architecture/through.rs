@@ -1,7 +1,7 @@
 //! Twins that parity kernels run through others.
 
 /// Twins that no parity kernel calls by name: the function, and the one through which a kernel runs it.
-pub const THROUGH: [(&str, &str); 114] = [
+pub const THROUGH: [(&str, &str); 125] = [
     ("eval_lambert", "eval_material"),
     ("eval_phong", "eval_material"),
     ("eval_blinn_phong", "eval_material"),
@@ -115,5 +115,16 @@ pub const THROUGH: [(&str, &str); 114] = [
     ("stretched_sine", "smith_lambda"),
     ("visible_area", "pdf_facet"),
     ("visible_slope", "sample_visible"),
+    ("eval_tabulated", "eval_material"),
+    ("pdf_tabulated", "pdf_material"),
+    ("sample_tabulated", "sample_direction"),
+    ("tabulated", "eval_tabulated"),
+    ("tabulated_count", "tabulated"),
+    ("tabulated_corner", "eval_tabulated"),
+    ("tabulated_interval", "tabulated_place"),
+    ("tabulated_place", "eval_tabulated"),
+    ("tabulated_share", "tabulated_place"),
+    ("tabulated_turns", "eval_tabulated"),
+    ("tabulated_weight", "eval_tabulated"),
     ("ward_bell", "eval_ward"),
 ];

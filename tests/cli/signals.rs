@@ -1,7 +1,7 @@
 //! Ctrl-C and SIGTERM: what was finished is saved, soon.
 #![cfg(unix)]
 
-use super::support::{Folder, program};
+use super::support::{Folder, has_device, program};
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
@@ -19,9 +19,9 @@ impl Drop for Running {
 
 impl Running {
     /// A render that would take days, once it has begun.
-    fn render(folder: &Folder, output: &str) -> Self {
+    fn render(folder: &Folder, output: &str, device: &str) -> Self {
         let mut command = Command::new(program());
-        command.args(["render", "scene.toml", "--backend", "cpu", "--spp", "16777216", "--verbose", "-o", output]);
+        command.args(["render", "scene.toml", "--device", device, "--spp", "16777216", "--verbose", "-o", output]);
         let child = command.current_dir(folder.path("")).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
         let mut running = Self(child.expect("the program starts"));
         let stderr = running.0.stderr.take().expect("piped");
@@ -51,10 +51,10 @@ impl Running {
     }
 }
 
-#[test]
-fn ctrl_c_saves_the_film_so_far_and_exits_with_130() {
+/// Interrupts a render on `device`.
+fn ctrl_c_saves_what_was_finished(device: &str) {
     let folder = Folder::new();
-    let mut render = Running::render(&folder, "a.gfilm");
+    let mut render = Running::render(&folder, "a.gfilm", device);
     render.signal("-INT");
     assert_eq!(render.ends().code(), Some(130));
     let film = folder.film("a.gfilm");
@@ -66,9 +66,21 @@ fn ctrl_c_saves_the_film_so_far_and_exits_with_130() {
 }
 
 #[test]
+fn ctrl_c_saves_the_film_so_far_and_exits_with_130() {
+    ctrl_c_saves_what_was_finished("cpu");
+}
+
+#[test]
+fn ctrl_c_ends_all_devices_on_whole_passes() {
+    if has_device() {
+        ctrl_c_saves_what_was_finished("all");
+    }
+}
+
+#[test]
 fn sigterm_saves_the_picture_so_far_and_exits_with_143() {
     let folder = Folder::new();
-    let mut render = Running::render(&folder, "a.png");
+    let mut render = Running::render(&folder, "a.png", "cpu");
     render.signal("-TERM");
     assert_eq!(render.ends().code(), Some(143));
     let picture = folder.picture("a.png");

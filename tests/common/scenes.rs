@@ -44,12 +44,16 @@ pub fn asset(path: &str) -> Option<PathBuf> {
     Some(file)
 }
 
+/// The scene at the size and with the samples of `take`.
+pub fn taken(mut scene: Scene, take: Take) -> Scene {
+    (scene.film.width, scene.film.height) = (take.width, take.height);
+    (scene.settings.samples, scene.settings.seed) = (take.samples, take.seed);
+    scene
+}
+
 /// Loads and bakes.
 pub fn prepare(path: &Path, take: Take) -> (Scene, SceneData) {
-    let mut scene = load::load(path, &[]).unwrap_or_else(|error| panic!("{error}"));
-    (scene.film.width, scene.film.height) = (take.width, take.height);
-    scene.settings.samples = take.samples;
-    scene.settings.seed = take.seed;
+    let scene = taken(load::load(path, &[]).unwrap_or_else(|error| panic!("{error}")), take);
     let data = bake(&scene).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     (scene, data)
 }

@@ -194,11 +194,12 @@ void store_constants() {
     constants[117] = CHANNEL_A;
     constants[118] = CHANNEL_RGB;
     constants[119] = TEXTURES_MOST;
-    constants[120] = SHADOWS_OFF;
-    constants[121] = SHADOWS_OPAQUE;
-    constants[122] = SHADOWS_FILTERED;
-    constants[123] = SLIDE_ENTRIES;
-    constants[124] = MATERIAL_BY_SIDE;
+    constants[120] = MODEL_TABULATED;
+    constants[121] = SHADOWS_OFF;
+    constants[122] = SHADOWS_OPAQUE;
+    constants[123] = SHADOWS_FILTERED;
+    constants[124] = SLIDE_ENTRIES;
+    constants[125] = MATERIAL_BY_SIDE;
 }
 
 void main() {

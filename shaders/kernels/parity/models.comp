@@ -6,8 +6,18 @@
 #include "layout/mod.glsl"
 #include "shading/sampling.glsl"
 
-// Tables of anything at all: the same hash fills the Rust twin's.
-float load_table(uint index) { return unit_float(hash_u32(index)); }
+// Where the head of a table for directions of light begins: counts, then knots, light angles and view angles rising, cosines falling.
+const uint TABULATED_AT = 16u;
+const float COUNTS[5] = float[](5.0, 6.0, 7.0, 8.0, 2.0);
+
+// That head, and a hash of the index everywhere else.
+float load_table(uint index) {
+    uint at = index - TABULATED_AT;
+    if (at < 5u) return COUNTS[at];
+    if (at < 17u) return float(at - 5u) * 0.13;
+    if (at < 24u) return 1.0 - float(at - 17u) * 0.14;
+    return unit_float(hash_u32(index));
+}
 
 #include "shading/material.glsl"
 
@@ -34,7 +44,7 @@ Material material(uint model) {
     m.texture_count = 0u;
     m.absorption = vec3(0.0);
     m.emission = vec3(0.0);
-    m.table = 64u;
+    m.table = model == MODEL_TABULATED ? TABULATED_AT : 64u;
     m.m0_v = argument(13u);
     m.m1_v = 0.25;
     m.k_t = 0.375;

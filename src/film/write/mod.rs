@@ -6,7 +6,7 @@ mod png;
 
 pub use self::exr::write_linear;
 pub use hdr::rgbe;
-pub use png::write_rgb8;
+pub use png::{Plate, write_rgb8};
 
 use super::{Film, FilmError, OutputFile, gfilm};
 use std::io::{self, Write};
@@ -120,7 +120,7 @@ impl Picture<'_> {
 }
 
 /// What every picture file says about where it came from, in this order.
-fn facts(film: &Film) -> Vec<(&'static str, String)> {
+pub fn facts(film: &Film) -> Vec<(&'static str, String)> {
     let spec = film.spec();
     let mut facts = vec![
         ("Software", format!("gonio {}", spec.version)),

@@ -163,15 +163,12 @@ impl VulkanRenderer {
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
-    /// Adds a band's sums to the film.
-    fn add_to_film(&mut self, band: Rect, job: &Job, film: &mut Film) -> Result<(), VulkanError> {
+    /// A band's sums, and its auxiliary values if they are wanted.
+    fn read_band(&mut self, band: Rect) -> Result<(Vec<FilmSum>, Vec<AovPixel>), VulkanError> {
         let queues = self.queues.as_ref().expect("made ready by the caller");
         let (sums, aovs) = (queues.film.clone(), queues.aovs.clone());
-        film.add_sums(band, &self.download::<FilmSum>(&sums, band.area())?);
-        if self.header.aovs != 0 {
-            film.add_aovs(band, &self.download::<AovPixel>(&aovs, band.area())?, job.samples.contains(&0));
-        }
-        Ok(())
+        let aov_count = if self.header.aovs != 0 { band.area() } else { 0 };
+        Ok((self.download(&sums, band.area())?, self.download(&aovs, aov_count)?))
     }
 }
 
@@ -248,9 +245,17 @@ impl Renderer for VulkanRenderer {
         let buffer = queues.control.clone();
         self.context.upload(&buffer, 0, bytemuck::bytes_of(&control))?;
         let mut tally = Tally::new(control);
+        let mut done = Vec::new();
         for band in bands {
             self.run_band(band, job, &mut tally, watch)?;
-            self.add_to_film(band, job, film)?;
+            done.push((band, self.read_band(band)?));
+        }
+        // All or nothing: a job that fails leaves the film as it was.
+        for (band, (sums, aovs)) in done {
+            film.add_sums(band, &sums);
+            if !aovs.is_empty() {
+                film.add_aovs(band, &aovs, job.samples.contains(&0));
+            }
         }
         log::debug!("{} rays in {} rounds", tally.counters.closest_rays, tally.last.rounds);
         film.record(job.samples.clone(), tally.nan_count, tally.clamped_count);

@@ -2,10 +2,8 @@
 //!
 //! Source: Matusik et al. 2003, "A Data-Driven Reflectance Model", and the reader that comes with the database.
 
-use super::text::read_bytes;
 use crate::scene::{Location, SceneError};
 use std::path::Path;
-use std::sync::Arc;
 
 /// Cells in theta_h, theta_d and phi_d.
 const SIZES: [u32; 3] = [90, 90, 180];
@@ -13,13 +11,15 @@ const SIZES: [u32; 3] = [90, 90, 180];
 const SCALES: [f64; 3] = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
 
 /// BRDF values per steradian as `Table::Merl` holds them; negative where a direction is below the horizon.
-pub fn read_merl(file: &Path) -> Result<Arc<Vec<f32>>, SceneError> {
-    let bytes = read_bytes(file)?;
+pub fn read_merl(file: &Path, bytes: &[u8]) -> Result<Vec<f32>, SceneError> {
     let bad = |message: String| SceneError::bad(Location::file(file), message);
     let plane = SIZES.iter().map(|&size| size as usize).product::<usize>();
     let expected = 12 + 3 * plane * 8;
     if bytes.len() != expected {
-        return Err(bad(format!("a MERL table has {expected} bytes, found {}", bytes.len())));
+        let found = bytes.len();
+        return Err(bad(format!(
+            "a MERL table has {expected} bytes, found {found}; gonio's own begin with \"gonio-brdf 1\""
+        )));
     }
     let (head, body) = bytes.split_at(12);
     let sizes: Vec<u32> = head.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
@@ -34,5 +34,5 @@ pub fn read_merl(file: &Path) -> Result<Arc<Vec<f32>>, SceneError> {
         // No measured surface is brighter; NaN is none.
         if value >= 0.0 { value.min(1.0e6) as f32 } else { -1.0 }
     };
-    Ok(Arc::new(body.as_chunks::<8>().0.iter().enumerate().map(value).collect()))
+    Ok(body.as_chunks::<8>().0.iter().enumerate().map(value).collect())
 }

@@ -2,12 +2,15 @@
 
 mod bounds;
 pub mod builtin;
+mod directional;
 pub mod gltf;
 pub mod image;
+pub mod measured;
 mod merl;
 mod meter;
 pub mod mitsuba;
 pub mod obj;
+mod panels;
 pub mod ply;
 mod polygon;
 pub mod staging;
@@ -16,10 +19,11 @@ mod texture_files;
 pub mod toml;
 
 pub use self::toml::Override;
+pub use panels::Panels;
 
 use crate::scene::{Location, Scene, SceneError};
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Bytes of a scene on standard input at most: text of a size that nobody writes, so an endless stream ends.
 const STDIN_MAX: u64 = 64 << 20;
@@ -42,6 +46,28 @@ pub fn load_with(path: &Path, overrides: &[Override], defines: &[(String, String
         toml::override_settings(&mut scene, overrides)?;
         return Ok(scene);
     }
+    if let Some((name, text)) = toml_text(path, defines)? {
+        return toml::scene_from_text(&name, text, overrides);
+    }
+    if let Some(scene) = builtin::load(path) {
+        let mut scene = scene?;
+        toml::override_film(&mut scene, overrides)?;
+        toml::override_settings(&mut scene, overrides)?;
+        return Ok(scene);
+    }
+    let mut scene = load_file(path)?;
+    // The stage is built for the size of the picture.
+    toml::override_film(&mut scene, overrides)?;
+    staging::stage(&mut scene);
+    toml::override_settings(&mut scene, overrides)?;
+    Ok(scene)
+}
+
+/// The name and the text of a TOML scene, which `-` is, too; None for other formats.
+fn toml_text(path: &Path, defines: &[(String, String)]) -> Result<Option<(PathBuf, String)>, SceneError> {
+    if extension(path) == "xml" {
+        return Ok(None);
+    }
     if let Some((name, _)) = defines.first() {
         let message = format!("-D {name}: only Mitsuba scenes (.xml) have parameters; --set changes keys of others");
         return Err(SceneError::bad(Location::file(path), message));
@@ -55,23 +81,12 @@ pub fn load_with(path: &Path, overrides: &[Override], defines: &[(String, String
             let message = format!("a scene on standard input has at most {STDIN_MAX} bytes");
             return Err(SceneError::bad(Location::file(name), message));
         }
-        return toml::scene_from_text(name, text::utf8(name, bytes)?, overrides);
+        return Ok(Some((name.to_owned(), text::utf8(name, bytes)?)));
     }
-    if let Some(scene) = builtin::load(path) {
-        let mut scene = scene?;
-        toml::override_film(&mut scene, overrides)?;
-        toml::override_settings(&mut scene, overrides)?;
-        return Ok(scene);
+    if extension(path) != "toml" {
+        return Ok(None);
     }
-    if extension(path) == "toml" {
-        return toml::scene_from_text(path, text::utf8(path, text::read_bytes(path)?)?, overrides);
-    }
-    let mut scene = load_file(path)?;
-    // The stage is built for the size of the picture.
-    toml::override_film(&mut scene, overrides)?;
-    staging::stage(&mut scene);
-    toml::override_settings(&mut scene, overrides)?;
-    Ok(scene)
+    Ok(Some((path.to_owned(), text::utf8(path, text::read_bytes(path)?)?)))
 }
 
 /// Loads what a file of a format that is not ours holds; what is missing is left to `staging`.

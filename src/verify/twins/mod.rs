@@ -137,6 +137,32 @@ fn same(a: u32, b: u32) -> bool {
     a == b || (f32::from_bits(a).is_nan() && f32::from_bits(b).is_nan())
 }
 
+/// Results of one twin in Rust, `RESULTS` words for each set of `ARGUMENTS` words.
+pub fn evaluate(family: &Family, number: usize, inputs: &[u32]) -> Vec<u32> {
+    let run = |set: &[u32]| {
+        let mut out = Out::default();
+        (family.twins[number].run)(&In(set), &mut out);
+        out.words
+    };
+    inputs.chunks(ARGUMENTS).flat_map(run).collect()
+}
+
+/// The same on a device.
+pub fn evaluate_on(
+    context: &mut Context,
+    family: &Family,
+    number: usize,
+    inputs: &[u32],
+) -> Result<Vec<u32>, RenderError> {
+    let count = inputs.len() / ARGUMENTS;
+    let words = kernel(family.kernel, Fetch::Storage).expect("every family names an embedded kernel");
+    let buffers = [BufferSpec::Input(bytemuck::cast_slice(inputs)), BufferSpec::Output((count * RESULTS * 4) as u64)];
+    let choice = [number as u32, count as u32];
+    let groups = count.div_ceil(64) as u32;
+    let outputs = context.run_kernel(family.kernel, words, &buffers, bytemuck::cast_slice(&choice), groups)?;
+    Ok(outputs[0].chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+}
+
 /// Evaluates one twin on `count` sets of arguments on both sides: how many differ, and the first that does.
 pub fn compare(
     context: &mut Context,
@@ -147,12 +173,7 @@ pub fn compare(
 ) -> Result<(usize, Option<Mismatch>), RenderError> {
     let twin = &family.twins[number];
     let inputs = arguments(twin.domains, count, seed);
-    let words = kernel(family.kernel, Fetch::Storage).expect("every family names an embedded kernel");
-    let buffers = [BufferSpec::Input(bytemuck::cast_slice(&inputs)), BufferSpec::Output((count * RESULTS * 4) as u64)];
-    let choice = [number as u32, count as u32];
-    let groups = count.div_ceil(64) as u32;
-    let outputs = context.run_kernel(family.kernel, words, &buffers, bytemuck::cast_slice(&choice), groups)?;
-    let device: Vec<u32> = outputs[0].chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+    let device = evaluate_on(context, family, number, &inputs)?;
     let mut differ = 0;
     let mut first = None;
     for (set, device) in inputs.chunks(ARGUMENTS).zip(device.chunks(RESULTS)) {

@@ -6,7 +6,7 @@ use crate::layout::{
     MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC,
     MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR, MODEL_NULL, MODEL_OREN_NAYAR,
     MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC, MODEL_ROUGH_PLASTIC,
-    MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneHeader, SceneView,
+    MODEL_TABULATED, MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneHeader, SceneView,
 };
 use crate::shading::material::{
     albedo_material, ambient_material, emission_material, eval_material, is_delta, mirror_weight, own_weight,
@@ -38,28 +38,26 @@ const TABLE: usize = TABLE_AT as usize + 8 + 90 + 3 * 90 * 90 * 180;
 /// Where the models' tables begin.
 const TABLE_AT: u32 = 64;
 
-/// What `load_table` gives in the kernel: a hash of the index.
-static TABLES: LazyLock<Vec<f32>> = LazyLock::new(|| (0..TABLE as u32).map(|i| unit_float(hash_u32(i))).collect());
+/// Where the head of a table for directions of light begins: counts, then knots, light angles and view angles rising, cosines falling.
+const TABULATED_AT: u32 = 16;
+const COUNTS: [f32; 5] = [5.0, 6.0, 7.0, 8.0, 2.0];
+
+/// What `load_table` gives in the kernel: that head, and a hash of the index everywhere else.
+static TABLES: LazyLock<Vec<f32>> = LazyLock::new(|| (0..TABLE as u32).map(table_entry).collect());
 static HEADER: LazyLock<SceneHeader> = LazyLock::new(SceneHeader::default);
 
-/// A scene of tables alone.
-fn tables() -> SceneView<'static> {
-    SceneView {
-        header: &HEADER,
-        nodes: &[],
-        triangles: &[],
-        instances: &[],
-        top_instances: &[],
-        faces: &[],
-        vertices: &[],
-        materials: &[],
-        lights: &[],
-        emitters: &[],
-        environments: &[],
-        textures: &[],
-        texels: &[],
-        tables: &TABLES,
+fn table_entry(index: u32) -> f32 {
+    let at = index.wrapping_sub(TABULATED_AT);
+    match at {
+        0..5 => COUNTS[at as usize],
+        5..17 => (at - 5) as f32 * 0.13,
+        17..24 => 1.0 - (at - 17) as f32 * 0.14,
+        _ => unit_float(hash_u32(index)),
     }
+}
+
+fn tables() -> SceneView<'static> {
+    SceneView::of_tables(&HEADER, &TABLES)
 }
 
 fn material(i: &In, model: u32) -> Material {
@@ -81,7 +79,7 @@ fn material(i: &In, model: u32) -> Material {
         k_t: 0.375,
         transmit_color: Vec3::new(0.5, 0.25, 0.75),
         flags: i.u(12),
-        table: TABLE_AT,
+        table: if model == MODEL_TABULATED { TABULATED_AT } else { TABLE_AT },
         m0_v: i.f(13),
         m1_v: 0.25,
         exponent_v: i.f(14),
@@ -119,7 +117,7 @@ macro_rules! model {
     };
 }
 
-const TWINS: [[Twin; 3]; 21] = [
+const TWINS: [[Twin; 3]; 22] = [
     model!("eval_lambert pdf_lambert", "sample_lambert", "lambert: rest", MODEL_LAMBERT),
     model!("eval_phong pdf_phong", "sample_phong", "phong: rest", MODEL_PHONG),
     model!("eval_blinn_phong pdf_blinn_phong", "sample_blinn_phong", "blinn_phong: rest", MODEL_BLINN_PHONG),
@@ -151,6 +149,7 @@ const TWINS: [[Twin; 3]; 21] = [
     model!("eval_measured pdf_measured", "sample_measured", "measured: rest", MODEL_MEASURED),
     model!("nothing: eval", "nothing: sample", "nothing: rest", MODEL_NULL),
     model!("a blend: eval", "a blend: sample", "a blend: rest", MODEL_BLEND),
+    model!("eval_tabulated pdf_tabulated", "sample_tabulated", "tabulated: rest", MODEL_TABULATED),
 ];
 
 pub const FAMILY: Family = Family { kernel: "parity/models", twins: TWINS.as_flattened() };

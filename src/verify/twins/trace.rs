@@ -134,7 +134,7 @@ pub const FAMILY: Family = Family {
             domains: &AIMED,
             run: |i, o| {
                 let (v0, v1, v2) = (i.v3(3), i.v3(6), i.v3(9));
-                o.v3(intersect_triangle(&aimed_ray(i, i.v3(0), v0, v1, v2), v0, v1, v2));
+                o.v3(intersect_triangle(&aimed_ray(i, i.v3(0), v0, v1, v2), &v0, &v1, &v2));
             },
         },
         Twin {

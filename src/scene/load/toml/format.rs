@@ -17,6 +17,7 @@ pub static SCENE: Section = Section {
         key("material", Kind::Special(ONE_OR_MORE), "none", "Surfaces: `[[material]]`"),
         key("object", Kind::Special(ONE_OR_MORE), "required", "Things: `[[object]]`"),
         key("light", Kind::Special(ONE_OR_MORE), "none", "Lights: `[[light]]`"),
+        key("panel", Kind::Special(ONE_OR_MORE), "none", "The same scene side by side: `[[panel]]`"),
     ],
 };
 
@@ -117,6 +118,12 @@ pub static FILM: Section = Section {
             Kind::Special("a number from 0.1 to 10 or \"srgb\""),
             "`\"srgb\"`",
             "Display: what integers store is light to the power 1/gamma, or the curve of the sRGB standard",
+        ),
+        key(
+            "columns",
+            Kind::Integer { min: 1, max: MAX_PANELS },
+            "as many as panels",
+            "Panels in a row of the picture",
         ),
     ],
 };
@@ -365,6 +372,23 @@ pub static LIGHT: Section = Section {
     ],
 };
 
+/// Of one scene.
+const MAX_PANELS: i64 = 64;
+
+pub static PANEL: Section = Section {
+    name: "[[panel]]",
+    noun: "[[panel]]",
+    keys: &[
+        key("label", Kind::Text, "required", "Stands under it; unique"),
+        key(
+            "set",
+            Kind::Special("an array of changes such as \"render.ambient=0\""),
+            "none",
+            "What is different here, each as `--set` takes it; the command line's own come after them",
+        ),
+    ],
+};
+
 /// All of them.
 pub static SECTIONS: &[&Section] = &[
     &SCENE,
@@ -382,4 +406,5 @@ pub static SECTIONS: &[&Section] = &[
     &INSTANCE,
     &GRID,
     &LIGHT,
+    &PANEL,
 ];

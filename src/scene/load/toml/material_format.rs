@@ -121,7 +121,7 @@ pub static MATERIAL: Section = Section {
         key("flatness", Kind::Number(Range::UNIT), "0", "From diffuse to subsurface looks").only(DISNEY),
         key("clearcoat", Kind::Number(Range::UNIT), "0", "Strength of a second, clear highlight").only(DISNEY),
         key("clearcoat_gloss", Kind::Number(Range::UNIT), "0", "Its sharpness").only(DISNEY),
-        key("file", Kind::Text, "required for measured", "A table of the MERL database (`.binary`), relative to the scene file").only(&["measured"]),
+        key("file", Kind::Text, "required for measured", "A measured table: of the MERL database (`.binary`), or gonio's own format (\"Measured tables\" in scenes/README.md), relative to the scene file").only(&["measured"]),
         key("materials", Kind::Special("two names of materials"), "required for a blend", "What is blended; a blend may be one of them, and `null` cuts holes").only(&["blend"]),
         key("weight", Kind::Number(Range::UNIT), "0.5", "Of the second of `materials`").only(&["blend"]),
         key("opacity", Kind::Number(Range::UNIT), "1", "Coverage: the rest lets everything through").only(LOCAL),

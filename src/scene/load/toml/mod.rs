@@ -14,6 +14,7 @@ mod metal;
 mod names;
 mod object;
 mod overrides;
+mod panel;
 mod place;
 mod reader;
 mod settings;
@@ -24,6 +25,7 @@ mod texture;
 pub(super) use keys::LARGEST;
 pub use metal::{METALS, Metal};
 pub use overrides::Override;
+pub(super) use panel::{Layout, panel_from_text};
 pub use reader::nearest;
 
 use super::staging::bare_scene;
@@ -38,8 +40,12 @@ use std::path::Path;
 pub fn scene_from_text(file: &Path, text: String, overrides: &[Override]) -> Result<Scene, SceneError> {
     let mut document = Document::parse(file, text)?;
     document.apply(overrides)?;
-    let root = Reader::open(&document, &document.root, &SCENE)?;
-    let mut scene = bare_scene(file);
+    scene_from_document(&document)
+}
+
+fn scene_from_document(document: &Document) -> Result<Scene, SceneError> {
+    let root = Reader::open(document, &document.root, &SCENE)?;
+    let mut scene = bare_scene(&document.file);
     let mut lights = LightSettings { unit: IntensityUnit::Radiometric, ambient: Rgb::ZERO };
     read_render(&root, &mut scene.settings, &mut lights)?;
     read_film(&root, &mut scene.film)?;
@@ -69,7 +75,7 @@ pub fn override_settings(scene: &mut Scene, overrides: &[Override]) -> Result<()
     let mut document = Document::empty(Path::new(&scene.name));
     document.apply(overrides)?;
     let root = Reader::open(&document, &document.root, &SCENE)?;
-    for key in ["background", "material", "object", "light"] {
+    for key in ["background", "material", "object", "light", "panel"] {
         if root.has(key) {
             let message = format!("{key:?} can only be set in a TOML scene; here render, film and camera can");
             return Err(root.bad(key, message));

@@ -51,11 +51,16 @@ impl Document {
         for change in overrides {
             let place = Place::Override(self.overrides.len());
             self.overrides.push(change.to_string());
-            let outcome =
-                parse_value(&change.value, place).and_then(|value| set(&mut self.root, &change.path, value, place));
-            outcome.map_err(|message| self.bad(place, message))?;
+            self.change(change, place)?;
         }
         Ok(())
+    }
+
+    /// Applies one change that was written at `place`.
+    pub fn change(&mut self, change: &Override, place: Place) -> Result<()> {
+        let value = parse_value(&change.value, place);
+        let outcome = value.and_then(|value| set(&mut self.root, &change.path, value, place));
+        outcome.map_err(|message| self.bad(place, message))
     }
 }
 
@@ -85,7 +90,7 @@ fn set(node: &mut Node, path: &[String], value: Node, place: Place) -> std::resu
 }
 
 /// The keys of the root that are lists of tables: a change does not add to them.
-const LISTS: &[&str] = &["material", "object", "light"];
+const LISTS: &[&str] = &["material", "object", "light", "panel"];
 
 /// The item with this index, or the table with this name.
 fn find<'n>(items: &'n mut [Node], segment: &str) -> std::result::Result<&'n mut Node, String> {

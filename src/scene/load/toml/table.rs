@@ -2,7 +2,7 @@
 
 use super::reader::{Reader, Result};
 use super::texture::{beside, refer};
-use crate::scene::load::merl::read_merl;
+use crate::scene::load::measured::read_table;
 use crate::scene::{Table, TableId};
 use std::path::PathBuf;
 
@@ -20,8 +20,7 @@ impl Tables {
         if let Some(index) = self.files.iter().position(|known| *known == file) {
             return Ok(TableId(index as u32));
         }
-        let values = read_merl(&file).map_err(|error| refer(table, "file", error))?;
-        self.list.push(Table::Merl { values });
+        self.list.push(read_table(&file).map_err(|error| refer(table, "file", error))?);
         self.files.push(file);
         Ok(TableId(self.list.len() as u32 - 1))
     }
