@@ -16,7 +16,9 @@ const SCENES: [(&str, &str); 4] = [
     (
         "direct.xml",
         "<scene version=\"3.0.0\"><integrator type=\"direct\"><integer name=\"emitter_samples\" value=\"2\"/>\
-         <integer name=\"bsdf_samples\" value=\"1\"/></integrator><sensor type=\"perspective\"/>\
+         <integer name=\"bsdf_samples\" value=\"1\"/></integrator>\
+         <sensor type=\"perspective\"><string name=\"focal_length\" value=\"50mm\"/></sensor>\
+         <sensor type=\"thinlens\"><float name=\"fov\" value=\"40\"/></sensor>\
          <shape type=\"sphere\"/><emitter type=\"constant\"/></scene>",
     ),
 ];
