@@ -460,10 +460,7 @@ fn flaps_lenses_shadows_and_priorities_out_of_range_are_refused() {
     };
     let light = |keys: &str| format!("{LEAST}[[light]]\ntype = \"point\"\nposition = [0, 0, 0]\n{keys}\n");
     refuses(light("flaps_y = [1, 0]"), "a.toml:9:11: \"flaps_y\" = [1, 0] has its smaller number last");
-    refuses(
-        light("flaps_y = [1, 2, 3]"),
-        "9:11: \"flaps_y\" must be two numbers [min, max], found an array of 3",
-    );
+    refuses(light("flaps_y = [1, 2, 3]"), "9:11: \"flaps_y\" must be two numbers [min, max], found an array of 3");
     let expected = "a.toml:2:18: \"focus_distance\" has no meaning without a \"lens_radius\" above 0";
     refuses(LEAST.replace("[camera]\n", "[camera]\nfocus_distance = 2\n"), expected);
     let expected = "a.toml:7:11: \"shadows\" must be true, false or \"filtered\", found the string \"soft\"";

@@ -18,14 +18,16 @@ use super::{
     count_limited, push_path, push_shadow,
 };
 use crate::layout::{
-    EMITTER_LIGHT, Hit, INSTANCE_NO_SHADOW, MODEL_THIN_DIELECTRIC, Material, PathState, SHADOWS_FILTERED, SceneView, ShadowRay, T_INFINITE,
-    load_emitter, load_instance,
+    EMITTER_LIGHT, Hit, INSTANCE_NO_SHADOW, MODEL_THIN_DIELECTRIC, Material, PathState, SHADOWS_FILTERED, SceneView,
+    ShadowRay, T_INFINITE, load_emitter, load_instance,
 };
 use crate::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
 use crate::shading::environment::{background, pdf_environment};
 use crate::shading::frame::{Frame, to_local, to_world};
 use crate::shading::interior::cross_interface;
-use crate::shading::material::{emission_material, eval_material, is_delta, own_weight, pane_tint, pdf_material, sample_material};
+use crate::shading::material::{
+    emission_material, eval_material, is_delta, own_weight, pane_tint, pdf_material, sample_material,
+};
 use crate::shading::math::{div, rcp};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, sample_1d, sample_2d};
 use crate::shading::spectrum::{Spectrum, spectrum_flush, spectrum_from_rgb, spectrum_max};

@@ -7,8 +7,8 @@ use super::spectrum::Role;
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::intern;
 use crate::scene::{
-    Attenuation, Background, Channel, Environment, Flaps, IntensityUnit, Light, LightKind, Material, Parameter, Rgb, Slide,
-    Texture, TextureBinding, Wrap,
+    Attenuation, Background, Channel, Environment, Flaps, IntensityUnit, Light, LightKind, Material, Parameter, Rgb,
+    Slide, Texture, TextureBinding, Wrap,
 };
 use glam::{DAffine3, DVec3, Vec3};
 use std::f64::consts::PI;
