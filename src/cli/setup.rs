@@ -253,7 +253,9 @@ impl BackendFlags {
             BackendName::Auto => match vulkan() {
                 Ok(renderer) => self.proved(renderer),
                 Err(RenderError::NoDevice(reason)) => {
-                    log::warn!("{reason}: using the CPU backend");
+                    // A scene of panels opens a renderer for each: once is enough.
+                    static SAID: std::sync::Once = std::sync::Once::new();
+                    SAID.call_once(|| log::warn!("{reason}: using the CPU backend"));
                     Ok(Box::new(CpuRenderer::new(data, self.threads)?))
                 }
                 Err(error) => Err(error),

@@ -106,7 +106,7 @@ pub static MATERIAL: Section = Section {
         key("f0", Kind::Color(Range::UNIT), "none", "Reflectance at normal incidence: Fresnel after Schlick (1994) instead of `eta`, `k` and `metal`").only(METALS),
         key("alpha", Kind::Special("a number or two numbers [u, v], from 0.001 to 2"), "0.2", "Roughness: of the microfacets' slopes, along u and v").only(ROUGHENED),
         key("distribution", Kind::Choice(&["beckmann", "gaussian", "trowbridge-reitz", "phong"]), "rough-conductor, -dielectric and -plastic `\"trowbridge-reitz\"`, else `\"beckmann\"`", "Of microfacets: by slope; by angle; GGX; cos^c with c = 2 / alpha^2 - 2").only(FACETS),
-        key("masking", Kind::Choice(&["v-cavity", "smith"]), "`\"v-cavity\"`", "How facets hide each other: in grooves, or Smith's, correlated by height").only(&["cook-torrance"]),
+        key("masking", Kind::Choice(&["v-cavity", "smith"]), "`\"v-cavity\"`", "How facets hide each other: in grooves, or Smith's, correlated by height (for phong lobes Beckmann's, which from .5 on hides too little at grazing angles)").only(&["cook-torrance"]),
         key("compensate", Kind::Boolean, "false", "Adds what facets reflect among each other (Kulla and Conty 2017): a metal that absorbs nothing reflects everything").only(&["rough-conductor"]),
         key("nonlinear", Kind::Boolean, "false", "Colours light at each reflection inside the coat").only(&["plastic", "rough-plastic"]),
         key("sigma", Kind::Number(Range::new(0.0, 90.0)), "30", "Standard deviation of the slope of Oren and Nayar's cavities (1994), degrees").only(&["oren-nayar"]),
