@@ -15,6 +15,7 @@ if [ -z "${WORK:-}" ]; then
     WORK=$(mktemp -d)
     trap 'rm -rf "$WORK"' EXIT
 fi
+mkdir -p "$WORK"
 [ $# -gt 0 ] || set -- terrain:200k teapots:200k hairball:200k
 
 make -C "$here" >&2
