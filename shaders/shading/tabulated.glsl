@@ -136,7 +136,7 @@ Spectrum eval_tabulated(Material material, vec3 wo, vec3 wi) {
         for (uint j = 0u; j < 4u; j++) {
             uint at = slice + 3u * tabulated_corner(view, t.view_angles, t.view_azimuths, j);
             vec3 value = vec3(load_table(at), load_table(at + 1u), load_table(at + 2u));
-            sum = sum + value * (share * tabulated_weight(view, j));
+            sum += value * (share * tabulated_weight(view, j));
         }
     }
     return spectrum_from_rgb((material.specular_color * sum) * wi.z);
@@ -159,7 +159,7 @@ float pdf_tabulated(Material material, vec3 wo, vec3 wi) {
         uint column = slice + steps + t.view_angles + cell.row * (t.view_azimuths + 1u) + cell.column;
         float rows = load_table(row + 1u) - load_table(row);
         float columns = load_table(column + 1u) - load_table(column);
-        chance = chance + tabulated_weight(light, i) * (rows * columns);
+        chance += tabulated_weight(light, i) * (rows * columns);
     }
     float high = load_table(t.cosines + cell.row) - load_table(t.cosines + cell.row + 1u);
     float specular = div(max_(chance, 0.0) * float(t.view_azimuths), max_(high, 1.0e-12) * TWO_PI);

@@ -108,13 +108,14 @@ fn figure(lines: Lines, kind: RayKind) -> Figure {
         step: 1.0,
     };
     let mixed = lines.keys().any(|(family, _)| lines.keys().any(|(other, _)| family != other));
-    let curve = |(index, ((family, tracer), mut points)): (usize, ((String, String), Vec<[f64; 2]>))| {
+    let family = lines.keys().next().map_or(String::new(), |(family, _)| family.clone());
+    let mut curves = Vec::new();
+    for ((family, tracer), mut points) in lines {
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let name = if mixed { format!("{family}, {tracer}") } else { tracer.clone() };
-        Curve { name, color: palette(index), dashed: !tracer.starts_with("gonio"), points }
-    };
-    let family = lines.keys().next().map_or(String::new(), |(family, _)| family.clone());
-    let curves: Vec<Curve> = lines.into_iter().enumerate().map(curve).collect();
+        let color = palette(curves.len());
+        curves.push(Curve { name, color, dashed: !tracer.starts_with("gonio"), points });
+    }
     let note = if mixed { format!("{} rays", kind.name()) } else { format!("{} rays, {family}", kind.name()) };
     Figure::cartesian("Time a ray against the size of the scene", note, x, "µs a ray, all cores", curves)
 }

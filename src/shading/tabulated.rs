@@ -159,7 +159,7 @@ pub fn eval_tabulated(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3
         for j in 0..4 {
             let at = slice + 3 * tabulated_corner(view, t.view_angles, t.view_azimuths, j);
             let value = Vec3::new(load_table(scene, at), load_table(scene, at + 1), load_table(scene, at + 2));
-            sum = sum + value * (share * tabulated_weight(view, j));
+            sum += value * (share * tabulated_weight(view, j));
         }
     }
     spectrum_from_rgb((material.specular_color * sum) * wi.z)
@@ -183,7 +183,7 @@ pub fn pdf_tabulated(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3)
         let column = slice + steps + t.view_angles + cell.row * (t.view_azimuths + 1) + cell.column;
         let rows = load_table(scene, row + 1) - load_table(scene, row);
         let columns = load_table(scene, column + 1) - load_table(scene, column);
-        chance = chance + tabulated_weight(light, i) * (rows * columns);
+        chance += tabulated_weight(light, i) * (rows * columns);
     }
     let high = load_table(scene, t.cosines + cell.row) - load_table(scene, t.cosines + cell.row + 1);
     let specular = div(max_(chance, 0.0) * t.view_azimuths as f32, max_(high, 1.0e-12) * TWO_PI);
