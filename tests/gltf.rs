@@ -1,22 +1,15 @@
 //! glTF: what of it becomes what of ours.
 
+#[path = "common/assets.rs"]
+mod assets;
+
+use assets::asset;
 use glam::{DVec3, Vec2, Vec3};
 use gonio::scene::load::{gltf, load};
 use gonio::scene::{
     Channel, Geometry, Material, Model, Parameter, Scene, SceneError, TextureBinding, TextureData, Transparency, Wrap,
 };
 use std::path::{Path, PathBuf};
-
-/// A file or folder of the assets; None, with a line saying so, where they are not installed.
-fn asset(name: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("GONIO_ASSETS").map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
-    let path = root.join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    println!("SKIPPED: no {name} in the assets");
-    None
-}
 
 /// Positions finite, indices valid, arrays of equal length, normals unit.
 fn check_scene(scene: &Scene) {

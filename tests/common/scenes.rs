@@ -1,6 +1,10 @@
 //! Scenes for tests: those of the project, and third-party ones where they are at hand.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+#[path = "assets.rs"]
+mod assets;
+
+pub use assets::asset;
 use gonio::bake::{SceneData, bake};
 use gonio::film::{Film, FilmSpec, Rect};
 use gonio::render::cpu::CpuRenderer;
@@ -30,18 +34,6 @@ pub fn all() -> Vec<PathBuf> {
     found.sort();
     assert!(found.len() >= 11, "only {} scenes found", found.len());
     found
-}
-
-/// A third-party file, or None with a line that says so.
-pub fn asset(path: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("GONIO_ASSETS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/assets"), PathBuf::from);
-    let file = root.join(path);
-    if !file.exists() {
-        println!("SKIPPED: no third-party scene {path}");
-        return None;
-    }
-    Some(file)
 }
 
 /// The scene at the size and with the samples of `take`.
