@@ -349,6 +349,22 @@ fn gltf_alpha_of_a_texture_blends_only_where_there_is_some() {
 }
 
 #[test]
+fn gltf_transmission_of_a_texture_counts_by_its_mean() {
+    let thin = |factor: f32| {
+        let material = format!(
+            r#"{{"pbrMetallicRoughness": {{"metallicFactor": 0}}, "extensions": {{"KHR_materials_transmission":
+            {{"transmissionFactor": {factor}, "transmissionTexture": {{"index": 0}}}}}}}}"#
+        );
+        textured_gltf(&material, &[[51, 255, 255, 255]])
+    };
+    let scene = thin(0.5);
+    let Some(Transparency::Filtered { k_t, .. }) = scene.materials[0].transparency else { panic!("{scene:?}") };
+    assert!((k_t - 0.1).abs() < 1e-6, "a fifth of a half: {k_t}");
+    assert_eq!(scene.warnings, ["transmission textures count by their mean"]);
+    assert_eq!(thin(0.0).materials[0].transparency, None);
+}
+
+#[test]
 fn gltf_specular_glossiness_is_converted_texel_by_texel() {
     let with = |diffuse: [u8; 4], specular: [u8; 4]| {
         let material = r#"{"extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseTexture": {"index": 0},
