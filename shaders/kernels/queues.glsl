@@ -3,6 +3,7 @@
 #define KERNELS_QUEUES_GLSL
 
 #include "transport/film.glsl"
+#include "transport/generate.glsl"
 
 // First entry of a level in the level buffer.
 uint level_first(uint level) {
@@ -56,7 +57,7 @@ void add_contribution(float scale, uint slot, vec4 value, uint dither) {
 
 // Records the first hit of a camera ray for the auxiliary channels.
 void add_aov(PathState path, float depth, vec3 normal, vec3 albedo, uint object, uint material) {
-    uint index = batch.first_pixel + path.slot % batch.pixel_count;
+    uint index = slot_pixel(batch, path.slot);
     for (uint lane = 0u; lane < 3u; lane++) {
         Fixed normal_units = to_fixed(normal[lane], AOV_SCALE, 0.5);
         ATOMIC_ADD_FIXED(aovs[index].normal, lane, normal_units)

@@ -14,6 +14,9 @@ const BATCH_CPU: u32 = 1 << 16;
 /// Samples of a pixel in a batch at most: resolve adds them up in one loop, and lavapipe of Mesa 22 ends all loops of an
 /// invocation after 65,535 turns.
 const BATCH_SAMPLES: u32 = 4096;
+/// Samples of a pixel in a batch of part of the picture, if there are as many. Their first rays take the same way, and
+/// devices that walk lanes in lockstep trace them in the time of one.
+const SIDE_BY_SIDE: u32 = 16;
 
 /// Entries of the queues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,12 +123,13 @@ fn bands_of(crop: Rect, pixels: u64) -> Vec<Rect> {
         .collect()
 }
 
-/// Cuts a band's samples into batches of at most `slots`: several samples of all pixels where the band is small,
-/// pixels of one sample where it is large.
+/// Cuts a band's samples into batches of at most `slots`: `SIDE_BY_SIDE` samples of some pixels where the band is large,
+/// more of all pixels where it is small.
 pub fn batches(band: Rect, samples: Range<u32>, slots: u32) -> impl Iterator<Item = Batch> {
     let pixels = band.width * band.height;
-    let pixel_step = pixels.div_ceil(pixels.div_ceil(slots).max(1)).max(1);
-    let sample_step = (slots / pixel_step).clamp(1, BATCH_SAMPLES);
+    let wanted = (slots / pixels.max(1)).max(SIDE_BY_SIDE).min(samples.end.saturating_sub(samples.start));
+    let sample_step = wanted.min(slots).clamp(1, BATCH_SAMPLES);
+    let pixel_step = (slots / sample_step).max(1);
     samples.clone().step_by(sample_step as usize).flat_map(move |first_sample| {
         let sample_count = sample_step.min(samples.end - first_sample);
         (0..pixels).step_by(pixel_step as usize).map(move |first_pixel| {
@@ -156,8 +160,8 @@ mod tests {
         for batch in batches(band, samples, slots) {
             assert!(batch.slot_count <= slots, "{batch:?}");
             for slot in 0..batch.slot_count {
-                let pixel = batch.first_pixel + slot % batch.pixel_count;
-                let sample = batch.first_sample + slot / batch.pixel_count;
+                let pixel = batch.first_pixel + slot / batch.sample_count;
+                let sample = batch.first_sample + slot % batch.sample_count;
                 assert!(seen.insert((pixel, sample)), "twice: pixel {pixel}, sample {sample}");
             }
         }

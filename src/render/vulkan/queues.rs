@@ -166,7 +166,7 @@ impl Queues {
 
     /// Records: every kernel once over nothing, so that a driver which compiles at the first dispatch does it now.
     pub fn record_warm_up<'r>(&'r self, r: &Recorder<'r>) {
-        let nothing = Batch { crop_width: 1, pixel_count: 1, ..Batch::default() };
+        let nothing = Batch { crop_width: 1, pixel_count: 1, sample_count: 1, ..Batch::default() };
         r.update(&self.control, 0, bytemuck::bytes_of(&self.fresh_control()));
         let Stages { generate, schedule, extend, shadow, shade, resolve } = &self.stages;
         for bound in [generate, schedule, extend, shadow, shade, resolve] {
