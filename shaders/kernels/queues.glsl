@@ -22,6 +22,13 @@ void push_path(PathState path) {
     levels[level_first(level) + at] = path;
 }
 
+// Appends path `i` of the chunk to a group. A group begins after as many entries as the chunk has for each before it.
+void push_shade(uint group, uint i) {
+    uint at = atomicAdd(control.shade_count[group], 1u);
+    order[group * control.chunk_count + at] = i;
+    if (at % GROUP_SIZE == 0u) atomicAdd(control.shade[group].x, 1u);
+}
+
 // Appends a shadow ray. Where the shadow kernel does so while others are read, to the half of the queue that is not.
 void push_shadow(ShadowRay shadow) {
     uint at = atomicAdd(control.shadow_count, 1u);

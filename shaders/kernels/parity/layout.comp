@@ -200,6 +200,8 @@ void store_constants() {
     constants[123] = SHADOWS_FILTERED;
     constants[124] = SLIDE_ENTRIES;
     constants[125] = MATERIAL_BY_SIDE;
+    constants[126] = MAX_SHADE_GROUPS;
+    constants[127] = SHADE_GROUP_MISSED;
 }
 
 void main() {

@@ -3,7 +3,7 @@
 use super::device::{DeviceInfo, DeviceKind};
 use super::error::VulkanError;
 use crate::film::Rect;
-use crate::layout::{AovPixel, Batch, FilmSum, Hit, PathState, SHADOWS_FILTERED, SceneHeader, ShadowRay};
+use crate::layout::{AovPixel, Batch, FilmSum, Hit, MAX_SHADE_GROUPS, PathState, SHADOWS_FILTERED, SceneHeader, ShadowRay};
 use crate::shaders::Fetch;
 use std::ops::Range;
 
@@ -75,13 +75,14 @@ impl QueuePlan {
         self.chunk * 2
     }
 
-    /// Names and bytes of the queues: levels, chunk, hits, shadow rays, slots.
-    pub fn sizes(&self) -> [(&'static str, u64); 5] {
+    /// Names and bytes of the queues: levels, chunk, hits, what is shaded together, shadow rays, slots.
+    pub fn sizes(&self) -> [(&'static str, u64); 6] {
         let level_entries = u64::from(self.batch) + u64::from(self.levels - 1) * u64::from(self.level_capacity());
         [
             ("ray queue", level_entries * size_of::<PathState>() as u64),
             ("ray chunk", u64::from(self.chunk) * size_of::<PathState>() as u64),
             ("hits", u64::from(self.chunk) * size_of::<Hit>() as u64),
+            ("order of shading", u64::from(self.chunk) * u64::from(MAX_SHADE_GROUPS) * size_of::<u32>() as u64),
             ("shadow ray queue", u64::from(self.shadows) * u64::from(self.halves) * size_of::<ShadowRay>() as u64),
             ("sample slots", u64::from(self.batch) * size_of::<FilmSum>() as u64),
         ]
