@@ -14,6 +14,7 @@ use crate::layout::{
 };
 use crate::shaders::{self, Fetch};
 use glam::Vec3;
+use rayon::prelude::*;
 use std::mem::offset_of;
 
 /// The wavefront's kernels in the order in which they run.
@@ -116,13 +117,14 @@ impl Kernels {
             make("shade", &[grouping, (MODELS_PRESENT, models), (SHADE_GROUP, group), (SHADE_MODEL, model)])
         };
         let groups = if grouped { shade_groups(models) } else { vec![models] };
+        let numbered: Vec<(u32, u32)> = (0..).zip(groups).collect();
         Ok(Kernels {
             stages: Stages {
                 generate: make("generate", &[])?,
                 schedule: make("schedule", &[grouping])?,
                 extend: make("extend", &[grouping])?,
                 shadow: make("shadow", &[])?,
-                shade: (0..).zip(groups).map(shade).collect::<Result<_, _>>()?,
+                shade: numbered.into_par_iter().map(shade).collect::<Result<_, _>>()?,
                 resolve: make("resolve", &[])?,
             },
             grouped,
