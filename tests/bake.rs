@@ -173,7 +173,7 @@ fn what_cannot_be_hit_is_dropped_with_one_warning_and_keeps_its_number() {
     ];
     mesh.triangles = vec![[0, 1, 3], [0, 1, 5], [4, 1, 2], [1, 1, 2], [0, 1, 2]];
     let data = bake(&scene_of(vec![mesh])).expect("bakes");
-    let warning = "mesh \"bad\": dropped 2 triangles with coordinates that are not finite and 2 without area";
+    let warning = "mesh \"bad\": dropped triangles: 2 with coordinates that are not finite and 2 without area";
     assert_eq!(data.warnings, [warning]);
     assert_eq!((data.triangles.len(), data.faces.len()), (1, 5));
     let hit = trace_closest(&data.view(), &ray(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z));

@@ -67,12 +67,11 @@ pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId) -> BakedMesh {
     let of = |state| (0u32..).zip(&states).filter(move |(_, found)| **found == state).map(|(primitive, _)| primitive);
     let kept: Vec<u32> = of(State::Kept).collect();
     if kept.len() < states.len() {
-        baked.warning = Some(format!(
-            "mesh \"{}\": dropped {} triangles with coordinates that are not finite and {} without area",
-            mesh.name,
-            of(State::NotFinite).count(),
-            of(State::Flat).count()
-        ));
+        let reasons = [(State::NotFinite, "with coordinates that are not finite"), (State::Flat, "without area")];
+        let counted = reasons.map(|(state, reason)| (of(state).count(), reason));
+        let told = counted.iter().filter(|(count, _)| *count > 0).map(|(count, reason)| format!("{count} {reason}"));
+        let told = told.collect::<Vec<_>>().join(" and ");
+        baked.warning = Some(format!("mesh \"{}\": dropped triangles: {told}", mesh.name));
     }
     let before = start.elapsed().as_secs_f64();
     // The hierarchy before all that stays: building it takes the most memory.

@@ -9,7 +9,7 @@ use crate::render::{RenderError, Renderer};
 use crate::scene::{Integrator, Scene, Window, load};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::str::FromStr;
 
 /// `WxH`, 1 to 65,535 each.
@@ -291,28 +291,6 @@ pub fn crop_of(scene: &Scene, crop: Option<Crop>) -> anyhow::Result<Rect> {
 
 /// An empty film for a scene.
 pub fn film_of(scene: &Scene, data: &SceneData, crop: Rect) -> Film {
-    let integrator = match scene.settings.integrator {
-        Integrator::Local => "local",
-        Integrator::Whitted => "whitted",
-        Integrator::Direct => "direct",
-        Integrator::Path => "path",
-    };
-    Film::new(FilmSpec {
-        width: scene.film.width,
-        height: scene.film.height,
-        crop,
-        unit_exponent: scene.film.unit_exponent,
-        seed: scene.settings.seed,
-        scene_digest: data.digest(),
-        scene_name: PathBuf::from(&scene.name)
-            .file_name()
-            .map_or_else(|| scene.name.clone(), |name| name.to_string_lossy().into_owned()),
-        integrator: integrator.to_owned(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        transparent: data.header.hide_background != 0,
-        aovs: data.header.aovs != 0,
-        tonemap: scene.film.tonemap,
-        exposure: scene.film.exposure,
-        gamma: scene.film.gamma,
-    })
+    let (transparent, aovs) = (data.header.hide_background != 0, data.header.aovs != 0);
+    Film::new(FilmSpec { crop, ..FilmSpec::of(scene, data.digest(), transparent, aovs) })
 }

@@ -51,6 +51,24 @@ impl Running {
     }
 }
 
+#[test]
+fn ctrl_c_before_there_is_anything_to_save_ends_at_once_and_leaves_nothing() {
+    let folder = Folder::new();
+    let mut command = Command::new(program());
+    // The largest terrain there is: it takes far longer to make than this test waits.
+    command.args(["render", "terrain:33554432", "--device", "cpu", "-o", "a.png"]).current_dir(folder.path(""));
+    let mut render = Running(command.stderr(Stdio::null()).spawn().expect("the program starts"));
+    let start = Instant::now();
+    while folder.names().len() < 2 {
+        assert!(start.elapsed() < Duration::from_secs(20), "it never began");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(folder.names()[0].ends_with(".part"), "{:?}", folder.names());
+    render.signal("-INT");
+    assert_eq!(render.ends().code(), Some(130));
+    assert_eq!(folder.names(), ["scene.toml"]);
+}
+
 /// Interrupts a render on `device`.
 fn ctrl_c_saves_what_was_finished(device: &str) {
     let folder = Folder::new();

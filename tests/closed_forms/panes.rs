@@ -1,7 +1,7 @@
 //! Panes one behind another, seen through and shone through.
 
 use super::common::empty_scene;
-use super::{level, light, look_down, matte, mean_of, pane, picture, same_on_the_device, sun};
+use super::{Mean, level, light, look_down, matte, pane, picture, same_on_the_device, sun};
 use glam::Vec3;
 use gonio::scene::*;
 use std::f64::consts::PI;
@@ -146,9 +146,9 @@ fn lamp_behind_panes(shadows: Shadows) -> Scene {
 fn assert_same_light(channel: usize, factor: f64, picture_of: &Scene, other: &Scene) {
     let (a, b) = (picture(picture_of), picture(other));
     let value = |pixel: &[f32; 4]| f64::from(pixel[channel]);
-    let differences = a.iter().zip(&b).map(|(a, b)| factor * value(a) - value(b)).collect();
+    let differences: Vec<f64> = a.iter().zip(&b).map(|(a, b)| factor * value(a) - value(b)).collect();
     let bright = b.iter().map(value).sum::<f64>() / b.len() as f64;
-    let found = mean_of(differences);
+    let found = Mean::of(&differences);
     assert!(found.value.abs() < 5.0 * found.error, "channel {channel}: {found:?} beside {bright}");
     assert!(bright > 50.0 * found.error, "channel {channel}: noise of {found:?} beside {bright}");
 }

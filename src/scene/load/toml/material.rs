@@ -21,17 +21,21 @@ pub fn read_materials(
     warnings: &mut Vec<String>,
 ) -> Result<(Vec<Material>, Names)> {
     let mut names = Names::new("material");
-    let mut materials = Vec::new();
-    let entries = root.tables("material", &MATERIAL)?;
-    for table in &entries {
-        let name = table.required("name", table.text("name")?)?;
-        let name = names.declare(table, name)?;
-        materials.push(read_material(table, name, textures, tables, warnings)?);
+    let (mut entries, mut materials) = (Vec::new(), Vec::new());
+    for table in root.tables("material", &MATERIAL)? {
+        let name = table.attempt(|| names.declare(&table, table.required("name", table.text("name")?)?));
+        let Some(name) = name else { continue };
+        let material = table.attempt(|| read_material(&table, name.clone(), textures, tables, warnings));
+        // Objects find the name of a faulty material as well.
+        materials.push(material.unwrap_or_else(|| Material::grey(name)));
+        entries.push(table);
     }
     // A blend may name what comes after it.
     for (table, material) in entries.iter().zip(&mut materials) {
-        if let Model::Blend { a, b, .. } = &mut material.model {
-            [*a, *b] = read_blend(table, &names)?;
+        if let Model::Blend { a, b, .. } = &mut material.model
+            && let Some(parts) = table.attempt(|| read_blend(table, &names))
+        {
+            [*a, *b] = parts;
         }
     }
     Ok((materials, names))
