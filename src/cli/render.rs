@@ -3,10 +3,10 @@
 use super::gallery;
 use super::interrupt::Interrupt;
 use super::output::OutputFlags;
-use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, crop_of, film_of};
+use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, bake_scene_until, crop_of, film_of};
 use super::sheet::{self, Sheet};
 use super::{Usage, progress, team};
-use crate::bake::SceneData;
+use crate::bake::{BakeError, SceneData};
 use crate::film::write::{Aov, Format};
 use crate::film::{Film, OutputFile, Rect};
 use crate::render::team::{Member, Order, Share, render};
@@ -135,7 +135,13 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let mut interrupted = None;
     for scene in sheet.scenes() {
         let (label, scene) = scene?;
-        let mut developed = develop(args, &scene, &interrupt, !quiet && !args.no_progress)?;
+        let mut developed = match develop(args, &scene, &interrupt, !quiet && !args.no_progress) {
+            Err(error) if matches!(error.downcast_ref(), Some(BakeError::Aborted)) => {
+                interrupted = interrupt.exit_code();
+                break;
+            }
+            developed => developed?,
+        };
         if let Some(label) = label {
             developed.stats["panel"] = label.into();
         }
@@ -148,6 +154,8 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         }
     }
     match &mut films[..] {
+        // Interrupted before there was anything to save.
+        [] => return Ok(interrupted.map_or(ExitCode::SUCCESS, ExitCode::from)),
         [(_, film)] if !sheet.is_divided() => args.picture.write(film, format, &args.aov, output)?,
         panels => sheet::write(&sheet, panels, &args.picture, output)?,
     }
@@ -173,7 +181,7 @@ struct Developed {
 fn develop(args: &RenderArgs, scene: &Scene, interrupt: &Interrupt, show_progress: bool) -> anyhow::Result<Developed> {
     let crop = crop_of(scene, args.crop)?;
     let bake_start = Instant::now();
-    let mut data = bake_scene(scene)?;
+    let mut data = bake_scene_until(scene, &|| interrupt.exit_code().is_some())?;
     data.header.aovs = u32::from(!args.aov.is_empty());
     data.header.hide_background |= u32::from(args.transparent);
     let bake_time = bake_start.elapsed();
