@@ -71,7 +71,9 @@ impl Grid {
         let extent = centres.max - centres.min;
         // What lies in a plane falls into its first bin.
         let one = |x: f32| if x > 0.0 && (BINS as f32 / x).is_finite() { BINS as f32 / x } else { 0.0 };
-        Self { low: centres.min, scale: Vec3A::new(one(extent.x), one(extent.y), one(extent.z)) }
+        // Items keep numbers in the fourth lane, which are subnormal as floats and slow to multiply: less 1 they are not.
+        let low = Vec3A::from_vec4(centres.min.extend(1.0));
+        Self { low, scale: Vec3A::new(one(extent.x), one(extent.y), one(extent.z)) }
     }
 
     /// The bin on an axis, of where a centre lies in the grid.
