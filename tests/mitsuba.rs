@@ -1,5 +1,7 @@
 //! Mitsuba's XML scenes: what is read, what it means, and what is refused.
 
+#[path = "mitsuba/attributes.rs"]
+mod attributes;
 #[path = "mitsuba/meaning.rs"]
 mod meaning;
 #[path = "mitsuba/published.rs"]

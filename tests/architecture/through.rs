@@ -82,7 +82,6 @@ pub const THROUGH: [(&str, &str); 125] = [
     ("pdf_rough_plastic", "pdf_material"),
     ("pdf_ward", "pdf_material"),
     ("phong_exponent", "sample_facet"),
-    ("principled", "eval_principled"),
     ("principled_alpha", "eval_principled"),
     ("principled_choice", "sample_principled"),
     ("principled_diffuse", "eval_principled"),

@@ -97,8 +97,110 @@ fn a_sphere_is_moved_by_its_centre_before_its_transform() {
          <transform name=\"to_world\"><scale value=\"2\"/></transform></shape>",
     );
     assert_eq!(scene.objects[0].geometry, Geometry::Sphere);
+    // Ours stands around y, Mitsuba's around z.
     let pole = scene.objects[0].transform.0.transform_point3(DVec3::Y);
-    assert!(close(pole, [2.0, 1.0, 0.0]), "{pole}");
+    assert!(close(pole, [2.0, 0.0, 1.0]), "{pole}");
+}
+
+#[test]
+fn a_sphere_has_its_texture_around_z_from_x_towards_y_whichever_way_it_faces() {
+    // Where Mitsuba's (u, v) is, v from the pole at +z.
+    let places = [
+        ([0.25, 0.5], DVec3::Y),
+        ([0.5, 0.5], DVec3::NEG_X),
+        ([0.75, 0.5], DVec3::NEG_Y),
+        ([0.25, 0.25], DVec3::new(0.0, 0.5f64.sqrt(), 0.5f64.sqrt())),
+    ];
+    let scene = read(LEAST);
+    for (uv, place) in places {
+        // Of the analytic sphere: u = 0.5 towards its +z and growing towards +x, v from its pole at -y.
+        let (turn, height) = ((uv[0] - 0.5) * std::f64::consts::TAU, (uv[1] - 0.5) * std::f64::consts::PI);
+        let own = DVec3::new(turn.sin() * height.cos(), -height.sin(), turn.cos() * height.cos());
+        let found = scene.objects[0].transform.0.transform_point3(own);
+        assert!((found - place).length() < 1e-6, "{uv:?}: {found}");
+    }
+    let scene = read(
+        "<sensor type=\"perspective\"/><shape type=\"sphere\"><boolean name=\"flip_normals\" value=\"true\"/></shape>",
+    );
+    let (mesh, transform) = (mesh_of(&scene, &scene.objects[0]), scene.objects[0].transform.0);
+    for (uv, place) in places {
+        let at = |i: &usize| (transform.transform_point3(mesh.positions[*i].as_dvec3()) - place).length() < 1e-5;
+        let vertex = (0..mesh.positions.len()).find(at).expect("a vertex there");
+        let found = mesh.uvs[vertex];
+        assert!((found - Vec2::new(uv[0] as f32, 1.0 - uv[1] as f32)).length() < 1e-5, "{uv:?}: {found}");
+    }
+}
+
+#[test]
+fn every_face_of_a_cube_has_the_corners_of_mitsubas_table() {
+    let scene = read("<sensor type=\"perspective\"/><shape type=\"cube\"/>");
+    let mesh = mesh_of(&scene, &scene.objects[0]);
+    // Corner, normal and Mitsuba's uv: the first of each face in its source, and one across it.
+    for (corner, normal, uv) in [
+        ([1.0, -1.0, -1.0], Vec3::NEG_Y, [0.0, 1.0]),
+        ([1.0, 1.0, -1.0], Vec3::Y, [0.0, 1.0]),
+        ([1.0, -1.0, -1.0], Vec3::X, [0.0, 1.0]),
+        ([1.0, 1.0, 1.0], Vec3::X, [1.0, 0.0]),
+        ([1.0, -1.0, 1.0], Vec3::Z, [0.0, 1.0]),
+        ([-1.0, 1.0, 1.0], Vec3::Z, [1.0, 0.0]),
+        ([-1.0, -1.0, 1.0], Vec3::NEG_X, [0.0, 1.0]),
+        ([1.0, 1.0, -1.0], Vec3::NEG_Z, [0.0, 1.0]),
+    ] {
+        let is = |i: &usize| mesh.positions[*i] == Vec3::from_array(corner) && mesh.normals[*i] == normal;
+        let vertex = (0..mesh.positions.len()).find(is).expect("a corner");
+        assert_eq!(mesh.uvs[vertex], Vec2::new(uv[0], 1.0 - uv[1]), "{corner:?} of {normal}");
+    }
+}
+
+#[test]
+fn light_of_a_flat_spectrum_is_a_little_purple_and_numbers_and_colours_are_white() {
+    let radiance = |text: &str| match read(&format!("{LEAST}<emitter type=\"constant\">{text}</emitter>")).background {
+        Background::Gradient { bottom, .. } => bottom,
+        other => panic!("{other:?}"),
+    };
+    // As Mitsuba 3.9's scalar_rgb has them.
+    let flat = radiance("<spectrum name=\"radiance\" value=\"3\"/>");
+    assert!((flat - Rgb::new(3.61438, 2.84487, 2.72675)).abs().max_element() < 1e-5, "{flat}");
+    for white in [
+        "<float name=\"radiance\" value=\"3\"/>",
+        "<rgb name=\"radiance\" value=\"3\"/>",
+        "<spectrum name=\"radiance\" type=\"uniform\"><float name=\"value\" value=\"3\"/></spectrum>",
+        "<spectrum name=\"radiance\" type=\"d65\"><float name=\"scale\" value=\"3\"/></spectrum>",
+    ] {
+        assert_eq!(radiance(white), Rgb::splat(3.0), "{white}");
+    }
+    let wall = material("<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"0.3\"/></bsdf>");
+    assert_eq!(wall.color, Rgb::splat(0.3));
+}
+
+#[test]
+fn lamps_of_nothing_and_of_masks_emit_as_whole_ones() {
+    let emitter = "<emitter type=\"area\"><rgb name=\"radiance\" value=\"2\"/></emitter>";
+    let clear = Some(Transparency::Filtered { k_t: 1.0, color: Rgb::ONE });
+    for nothing in ["<bsdf type=\"null\"/>", "<bsdf type=\"mask\"><float name=\"opacity\" value=\"0\"/><bsdf type=\"diffuse\"/></bsdf>"] {
+        let lamp = material(&format!("{nothing}{emitter}"));
+        assert_eq!((lamp.transparency, lamp.emission, lamp.color), (clear, Rgb::splat(2.0), Rgb::ZERO), "{nothing}");
+    }
+    let mask = "<bsdf type=\"mask\"><float name=\"opacity\" value=\"0.25\"/><bsdf type=\"diffuse\"/></bsdf>";
+    let lamp = material(&format!("{mask}{emitter}"));
+    assert_eq!((lamp.opacity, lamp.emission), (0.25, Rgb::splat(8.0)), "a quarter is covered");
+}
+
+#[test]
+fn lights_of_no_size_pass_holes_under_volumetric_integrators_only() {
+    for (kind, shadows) in
+        [("path", Shadows::Opaque), ("direct", Shadows::Opaque), ("volpath", Shadows::Filtered), ("volpathmis", Shadows::Filtered)]
+    {
+        assert_eq!(read(&format!("{LEAST}<integrator type=\"{kind}\"/>")).settings.shadows, shadows, "{kind}");
+    }
+}
+
+#[test]
+fn merged_shapes_are_shown_each_and_names_of_plugins_may_have_capitals() {
+    let scene = read(
+        "<sensor type=\"perspective\"/><shape type=\"merge\"><shape type=\"Cube\"/><shape type=\"merge\"><shape type=\"sphere\"/></shape></shape>",
+    );
+    assert_eq!((scene.objects.len(), scene.objects[1].geometry), (2, Geometry::Sphere));
 }
 
 #[test]
@@ -348,6 +450,13 @@ fn a_checkerboard_has_its_first_colour_where_u_and_v_are_small() {
     assert_eq!(texture.shear, [0.0, 0.0]);
     let TextureData::Float(texels) = &texture.data else { panic!("{texture:?}") };
     assert_eq!((texels[0][0], texels[1][0], texture.bilinear), (0.4, 0.2, false));
+    // Where it is a number, Mitsuba's other function is asked, which has the colours swapped.
+    let scene = read(
+        "<sensor type=\"perspective\"/><shape type=\"cube\"><bsdf type=\"mask\"><texture type=\"checkerboard\" name=\"opacity\"/>\
+         <bsdf type=\"diffuse\"/></bsdf></shape>",
+    );
+    let TextureData::Float(texels) = &scene.textures[0].data else { panic!("{:?}", scene.textures) };
+    assert_eq!((texels[0][0], texels[1][0]), (0.2, 0.4));
 }
 
 #[test]

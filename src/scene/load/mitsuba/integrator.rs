@@ -2,7 +2,7 @@
 
 use super::document::{Document, Node, Result};
 use super::object::Object;
-use crate::scene::{Integrator, Scene};
+use crate::scene::{Integrator, Scene, Shadows};
 
 /// Integrators within integrators.
 const NESTING_MAX: u32 = 4;
@@ -45,6 +45,9 @@ fn read(document: &Document, node: Node, scene: &mut Scene, nesting: u32) -> Res
             {
                 scene.settings.rr_depth = rr_depth.min(i64::from(DEPTH_MAX) + 1) as u32;
             }
+            // Light without a size passes holes under the volumetric path tracers only; other light finds its way by itself.
+            let passes = kind.starts_with("volpath");
+            scene.settings.shadows = if passes { Shadows::Filtered } else { Shadows::Opaque };
             scene.settings.hide_emitters = object.boolean("hide_emitters")?.unwrap_or(false);
             Ok(())
         }
