@@ -2,6 +2,8 @@
 
 #[path = "mitsuba/attributes.rs"]
 mod attributes;
+#[path = "mitsuba/lamps.rs"]
+mod lamps;
 #[path = "mitsuba/meaning.rs"]
 mod meaning;
 #[path = "mitsuba/published.rs"]

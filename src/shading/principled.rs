@@ -123,8 +123,7 @@ pub fn eval_principled(material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
     if !outside {
         return spectrum_from_rgb(Vec3::splat((bsdf * f) * facets));
     }
-    let mut value =
-        principled_fresnel(material, f, o_h) * facets + principled_diffuse(material, wo, wi, i_h);
+    let mut value = principled_fresnel(material, f, o_h) * facets + principled_diffuse(material, wo, wi, i_h);
     let clearcoat = material.k_s;
     if clearcoat > 0.0 {
         let coat_f = mix_(0.04, 1.0, schlick_weight(o_h));
@@ -175,8 +174,7 @@ pub fn pdf_principled(material: &Material, wo: Vec3, wi: Vec3) -> f32 {
     if wo.z * wi.z <= 0.0 {
         return ((1.0 - reflection) * facets) * refraction_jacobian(o_h, dot3(wi, wm), eta);
     }
-    let coat =
-        if choice.y > 0.0 { choice.y * (clearcoat_d(clearcoat_alpha(material), wm.z) * wm.z) } else { 0.0 };
+    let coat = if choice.y > 0.0 { choice.y * (clearcoat_d(clearcoat_alpha(material), wm.z) * wm.z) } else { 0.0 };
     div(reflection * facets + coat, 4.0 * o_h.abs()) + choice.x * (max_(wi.z, 0.0) * INV_PI)
 }
 

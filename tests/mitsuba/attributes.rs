@@ -62,7 +62,8 @@ fn what_is_no_single_colour_becomes_a_picture_that_is_the_attribute_everywhere()
         let binding = bindings.into_iter().find(|binding| binding.parameter == parameter).expect("bound");
         data.textures[binding.texture.0 as usize]
     };
-    let (colors, roughs) = ([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6], [0.7, 0.8, 0.9], [1.0, 0.5, 0.0]], [0.5, 0.25, 0.75, 1.0]);
+    let (colors, roughs) =
+        ([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6], [0.7, 0.8, 0.9], [1.0, 0.5, 0.0]], [0.5, 0.25, 0.75, 1.0]);
     for (face, (corners, weight)) in [([0, 1, 2], 0.125), ([0, 2, 3], 0.875)].into_iter().enumerate() {
         for b in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.2, 0.5, 0.3], [0.5, 0.0, 0.5]] {
             let uv: Vec2 = (0..3).map(|k| mesh.uvs[mesh.triangles[face][k] as usize] * b[k]).sum();
@@ -79,7 +80,8 @@ fn what_is_no_single_colour_becomes_a_picture_that_is_the_attribute_everywhere()
 
 #[test]
 fn a_lamp_may_glow_as_its_vertices_say() {
-    let radiance = attribute("radiance", "vertex_color").replace("</texture>", "<float name=\"scale\" value=\"10\"/></texture>");
+    let radiance =
+        attribute("radiance", "vertex_color").replace("</texture>", "<float name=\"scale\" value=\"10\"/></texture>");
     let scene = shown(&format!("<emitter type=\"area\">{radiance}</emitter>"));
     let lamp = &scene.materials[scene.objects[0].material.expect("a material").0 as usize];
     assert_eq!((lamp.emission, lamp.textures[0].parameter), (Rgb::ONE, Parameter::Emission));
@@ -91,7 +93,8 @@ fn a_lamp_may_glow_as_its_vertices_say() {
 #[test]
 fn a_material_of_two_shapes_shows_the_attributes_of_each() {
     let other = PLY.replace("0.125 0.9", "0.625 0.9");
-    let shape = |file: &str| format!("<shape type=\"ply\"><string name=\"filename\" value=\"{file}\"/><ref id=\"m\"/></shape>");
+    let shape =
+        |file: &str| format!("<shape type=\"ply\"><string name=\"filename\" value=\"{file}\"/><ref id=\"m\"/></shape>");
     let text = scene_text(&format!(
         "<sensor type=\"perspective\"/><bsdf type=\"mask\" id=\"m\">{}<bsdf type=\"diffuse\"/></bsdf>{}{}",
         attribute("opacity", "face_weight"),
@@ -102,7 +105,12 @@ fn a_material_of_two_shapes_shows_the_attributes_of_each() {
     let data = bake(&scene).expect("bakes");
     let opacity = |object: usize| {
         let material = &scene.materials[scene.objects[object].material.expect("a material").0 as usize];
-        sample_texture(&data.view(), &data.textures[material.textures[0].texture.0 as usize], scene.meshes[object].uvs[0]).x
+        sample_texture(
+            &data.view(),
+            &data.textures[material.textures[0].texture.0 as usize],
+            scene.meshes[object].uvs[0],
+        )
+        .x
     };
     assert!((opacity(0) - 0.125).abs() < 1e-6 && (opacity(1) - 0.625).abs() < 1e-6, "{} {}", opacity(0), opacity(1));
 }
@@ -119,8 +127,10 @@ fn attributes_that_are_not_there_or_not_possible_are_refused_with_their_place() 
     let mask = format!("<bsdf type=\"mask\">{}<bsdf type=\"diffuse\"/></bsdf>", attribute("opacity", "face_pair"));
     refused(&mask, &format!("the mesh has no attribute \"face_pair\"; {has}"));
     let board = "<texture type=\"checkerboard\" name=\"reflectance\"/>";
-    let mixed =
-        format!("<bsdf type=\"mask\">{}<bsdf type=\"diffuse\">{board}</bsdf></bsdf>", attribute("opacity", "face_weight"));
+    let mixed = format!(
+        "<bsdf type=\"mask\">{}<bsdf type=\"diffuse\">{board}</bsdf></bsdf>",
+        attribute("opacity", "face_weight")
+    );
     refused(&mixed, "texture coordinates is not supported beside the attribute \"face_weight\"");
     let ball = scene_text(&format!("<sensor type=\"perspective\"/><shape type=\"sphere\">{diffuse}</shape>"));
     let error = try_files(&[("a.xml", &ball)], &[]).map(|_| ()).expect_err("a ball has none").to_string();

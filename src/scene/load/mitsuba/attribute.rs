@@ -95,7 +95,8 @@ impl Loader<'_> {
             ([(name, true)], 1, _) => Ok(Shown::Colors(name.clone())),
             (_, _, None) => Ok(Shown::Picture),
             (_, _, Some(other)) => {
-                let message = format!("what follows texture coordinates is not supported beside the attribute {name:?}");
+                let message =
+                    format!("what follows texture coordinates is not supported beside the attribute {name:?}");
                 Err(self.document.bad(other, message))
             }
         }

@@ -49,7 +49,8 @@ impl Loader<'_> {
     pub fn uncover(&mut self, emitter: Node, material: &mut Material) {
         if material.model == Model::Null || material.opacity == 0.0 {
             let transparency = Some(Transparency::Filtered { k_t: 1.0, color: Rgb::ONE });
-            let nothing = Material { model: Model::Lambert, color: Rgb::ZERO, transparency, opacity: 1.0, ..material.clone() };
+            let nothing =
+                Material { model: Model::Lambert, color: Rgb::ZERO, transparency, opacity: 1.0, ..material.clone() };
             *material = nothing;
         }
         material.emission *= 1.0 / material.opacity;

@@ -31,6 +31,12 @@ fn read(document: &Document, node: Node, scene: &mut Scene, nesting: u32) -> Res
             }
         }
         kind => {
+            if kind == "ptracer" {
+                let location = document.location_of(node);
+                let message =
+                    "the integrator \"ptracer\" is read as \"path\", whose pictures are the same but for noise";
+                scene.warnings.push(format!("{location}: {message}"));
+            }
             // Mitsuba counts the edges of a path, gonio the surfaces it scatters at: one less. -1 has no end there.
             let edges =
                 if kind == "direct" { Some(2) } else { object.integer("max_depth", -1, i64::from(i32::MAX))? };

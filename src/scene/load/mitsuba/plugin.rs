@@ -278,16 +278,20 @@ pub const PLUGINS: &[Plugin] = &[
     plugin("sampler", "ldsampler", &[SAMPLER], &[]),
     plugin("integrator", "path", &[PATH, PASSES], &[]),
     plugin("integrator", "volpath", &[PATH, PASSES], &[]),
+    plugin("integrator", "ptracer", &[PATH, PASSES], &[]),
     plugin("integrator", "volpathmis", &[PATH, PASSES, &[ignored("use_spectral_mis", Boolean)]], &[]),
     plugin(
         "integrator",
         "direct",
-        &[&[
-            ignored("shading_samples", Integer),
-            ignored("emitter_samples", Integer),
-            ignored("bsdf_samples", Integer),
-            p("hide_emitters", Boolean, "false"),
-        ], PASSES],
+        &[
+            &[
+                ignored("shading_samples", Integer),
+                ignored("emitter_samples", Integer),
+                ignored("bsdf_samples", Integer),
+                p("hide_emitters", Boolean, "false"),
+            ],
+            PASSES,
+        ],
         &[],
     ),
     plugin("integrator", "moment", &[], &["integrator"]),

@@ -47,7 +47,9 @@ impl Loader<'_> {
                 for shape in group.nested("shape") {
                     let shape = Object::open(self.document, shape.node)?;
                     if matches!(shape.plugin.name, "shapegroup" | "instance" | "merge") {
-                        return Err(self.document.bad(shape.node, "a shapegroup holds no groups, no instances and no merged shapes"));
+                        return Err(self
+                            .document
+                            .bad(shape.node, "a shapegroup holds no groups, no instances and no merged shapes"));
                     }
                     if let Some(emitter) = shape.only("emitter")? {
                         return Err(self.document.bad(emitter.written, "shapes of a shapegroup emit no light"));

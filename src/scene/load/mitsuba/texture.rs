@@ -16,7 +16,10 @@ use std::sync::Arc;
 pub enum Varying {
     Texture(TextureId),
     /// What the mesh brings along.
-    Attribute { name: String, scale: f32 },
+    Attribute {
+        name: String,
+        scale: f32,
+    },
 }
 
 /// Reads textures into a scene; equal ones once.

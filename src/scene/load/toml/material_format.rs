@@ -147,7 +147,7 @@ pub static TEXTURE: Section = Section {
             "file",
             Kind::Text,
             "required without `pattern`",
-            "PNG, JPEG, WebP, OpenEXR or Radiance HDR, relative to the scene file",
+            "PNG, JPEG, WebP, BMP, PNM, TGA, OpenEXR or Radiance HDR, relative to the scene file",
         ),
         key(
             "pattern",
