@@ -20,7 +20,7 @@ const SCENES: [(&str, &str); 4] = [
          <integer name=\"block_size\" value=\"32\"/><float name=\"timeout\" value=\"-1\"/></integrator>\
          <sensor type=\"perspective\"><string name=\"focal_length\" value=\"50mm\"/></sensor>\
          <sensor type=\"thinlens\"><float name=\"fov\" value=\"40\"/></sensor>\
-         <shape type=\"sphere\"/><emitter type=\"constant\"/></scene>",
+         <shape type=\"merge\"><shape type=\"sphere\"/></shape><emitter type=\"constant\"/></scene>",
     ),
 ];
 
