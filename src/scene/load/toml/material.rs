@@ -208,19 +208,23 @@ fn read_metal(table: &Reader) -> Result<Fresnel> {
 }
 
 fn read_principled(table: &Reader) -> Result<Principled> {
-    let or = |key, default| Ok(table.float(key)?.unwrap_or(default));
+    // What a texture varies is 1 unless given.
+    let part = |key: &str| -> Result<f32> {
+        let varies = table.has(&format!("{key}_texture"));
+        Ok(table.float(key)?.unwrap_or(if varies { 1.0 } else { 0.0 }))
+    };
     Ok(Principled {
-        roughness: or("roughness", 0.5)?,
-        anisotropic: or("anisotropic", 0.0)?,
-        metallic: or("metallic", if table.has("metallic_texture") { 1.0 } else { 0.0 })?,
-        spec_trans: or("spec_trans", 0.0)?,
+        roughness: table.float("roughness")?.unwrap_or(0.5),
+        anisotropic: part("anisotropic")?,
+        metallic: part("metallic")?,
+        spec_trans: part("spec_trans")?,
         eta: read_eta(table)?,
-        spec_tint: or("spec_tint", 0.0)?,
-        sheen: or("sheen", 0.0)?,
-        sheen_tint: or("sheen_tint", 0.0)?,
-        flatness: or("flatness", 0.0)?,
-        clearcoat: or("clearcoat", 0.0)?,
-        clearcoat_gloss: or("clearcoat_gloss", 0.0)?,
+        spec_tint: part("spec_tint")?,
+        sheen: part("sheen")?,
+        sheen_tint: part("sheen_tint")?,
+        flatness: part("flatness")?,
+        clearcoat: part("clearcoat")?,
+        clearcoat_gloss: part("clearcoat_gloss")?,
     })
 }
 
