@@ -265,9 +265,10 @@ fn the_page_needs_nothing_else_and_escapes_what_it_shows() {
         caption: "x < y & z".into(),
         pictures: vec![(Some("n < 2".into()), vec![1, 2, 3]), (Some("n > 2".into()), vec![4, 5, 6])],
         columns: 2,
+        plots: vec!["<svg></svg>".into()],
         text: "# <b>\n".into(),
     };
-    let page = page("T", &[Part { entries: vec![entry], plots: vec!["<svg></svg>".into()] }]);
+    let page = page("T", &[Part { entries: vec![entry] }]);
     assert!(page.contains("x &lt; y &amp; z") && page.contains("# &lt;b&gt;") && page.contains("base64,AQID"));
     assert!(page.contains("<h2>2 · Phong's highlight</h2>") && page.contains("<a href=\"#row-2\">"), "{page}");
     assert!(page.contains("<figcaption>n &lt; 2</figcaption>") && page.contains("<math"), "{page}");

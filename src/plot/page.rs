@@ -18,6 +18,8 @@ pub struct Entry {
     pub pictures: Vec<(Option<String>, Vec<u8>)>,
     /// Pictures in a row, where there is room for them.
     pub columns: usize,
+    /// SVG files.
+    pub plots: Vec<String>,
     /// The scene file.
     pub text: String,
 }
@@ -25,8 +27,6 @@ pub struct Entry {
 /// A part of the page: a row of the lecture, or a scene that belongs to none.
 pub struct Part {
     pub entries: Vec<Entry>,
-    /// SVG files.
-    pub plots: Vec<String>,
 }
 
 impl Part {
@@ -117,11 +117,6 @@ fn section(part: &Part) -> String {
         }
         html.push_str(&scene(entry));
     }
-    // A narrow screen scrolls plots: smaller, their words could not be read.
-    let plots: String = part.plots.iter().map(|plot| format!("<div class=\"plot\">{plot}</div>\n")).collect();
-    if !plots.is_empty() {
-        html.push_str(&format!("<div class=\"plots\">\n{plots}</div>\n"));
-    }
     html + "</section>\n"
 }
 
@@ -144,8 +139,11 @@ fn scene(entry: &Entry) -> String {
             "<figure><img alt=\"{alt}\" src=\"data:image/png;base64,{picture}\">{caption}</figure>\n"
         ));
     }
-    html + &format!(
-        "</div>\n<details>\n<summary>{name}.toml</summary>\n<pre>{}</pre>\n</details>\n",
-        escaped(&entry.text)
-    )
+    html.push_str("</div>\n");
+    // A narrow screen scrolls plots: smaller, their words could not be read.
+    let plots: String = entry.plots.iter().map(|plot| format!("<div class=\"plot\">{plot}</div>\n")).collect();
+    if !plots.is_empty() {
+        html.push_str(&format!("<div class=\"plots\">\n{plots}</div>\n"));
+    }
+    html + &format!("<details>\n<summary>{name}.toml</summary>\n<pre>{}</pre>\n</details>\n", escaped(&entry.text))
 }
