@@ -104,6 +104,15 @@ fn every_model_reads_its_own_keys() {
         panic!()
     };
     assert_eq!((lobes[0].distribution, masking), (Distribution::Gaussian, Masking::Smith));
+    let Model::CookTorrance { lobes, .. } = model(
+        "model = \"cook-torrance\"\ndistribution = \"trowbridge-reitz\"\n\
+         lobes = [{ m = [0.1, 0.4], weight = 0.7 }, { m = 0.5, weight = 0.3, distribution = \"phong\" }]",
+    ) else {
+        panic!()
+    };
+    let lobe = |distribution, alpha_u, alpha_v, weight| Lobe { distribution, alpha_u, alpha_v, weight };
+    assert_eq!(lobes[0], lobe(Distribution::TrowbridgeReitz, 0.1, 0.4, 0.7));
+    assert_eq!(lobes[1], lobe(Distribution::Phong, 0.5, 0.5, 0.3));
 }
 
 #[test]
@@ -116,6 +125,8 @@ fn wrong_models_and_values_are_refused_with_their_place_and_what_was_meant() {
     assert!(error.contains("needs \"metal\""), "{error}");
     let error = refused("model = \"rough-plastic\"\nalpha = [0.1, 0.2]");
     assert!(error.contains("isotropic"), "{error}");
+    let error = refused("model = \"cook-torrance\"\nm = [0.1, 0.2]\ndistribution = \"gaussian\"");
+    assert!(error.contains(":10:") && error.contains("isotropic"), "{error}");
     let error = refused("model = \"rough-dielectric\"\nalpha = 3");
     assert!(error.contains("0.001 to 2"), "{error}");
     let error = refused("model = \"blend\"\nmaterials = [\"m\", \"n\"]");
