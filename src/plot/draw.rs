@@ -258,17 +258,21 @@ fn ramp<DB: DrawingBackend>(canvas: &Canvas<DB>, panel: Panel, x: &Axis, strips:
     Ok(())
 }
 
+/// In rows of up to three.
 fn bodies<DB: DrawingBackend>(canvas: &Canvas<DB>, panel: Panel, bodies: &[Body]) -> Result<()> {
-    let width = panel.width() / bodies.len().max(1) as f64;
+    let columns = bodies.len().clamp(1, 3);
+    let rows = bodies.len().div_ceil(columns).max(1);
+    let (width, height) = (panel.width() / columns as f64, panel.height() / rows as f64);
     for (i, body) in bodies.iter().enumerate() {
-        let left = panel.left + width * i as f64;
-        let side = width.min(panel.height() - 30.0);
-        let corner = [left + (width - side) / 2.0, panel.top + (panel.height() - 30.0 - side) / 2.0];
+        let (left, top) = (panel.left + width * (i % columns) as f64, panel.top + height * (i / columns) as f64);
+        let side = width.min(height - 30.0);
+        let corner = [left + (width - side) / 2.0, top + (height - 30.0 - side) / 2.0];
         let place = |p: &[f64; 2]| [corner[0] + side * p[0], corner[1] + side * (1.0 - p[1])];
         for facet in &body.facets {
             canvas.polygon(&facet.corners.iter().map(place).collect::<Vec<_>>(), facet.color)?;
         }
-        canvas.text(&body.name, [left + width / 2.0, panel.bottom - 12.0], TEXT, Anchor::Centre, INK)?;
+        let size = TEXT.min(width / text_width(&body.name, 1.0).max(1.0));
+        canvas.text(&body.name, [left + width / 2.0, top + height - 12.0], size, Anchor::Centre, INK)?;
     }
     Ok(())
 }
