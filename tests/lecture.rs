@@ -7,7 +7,7 @@ mod scenes;
 
 use glam::DVec3;
 use gonio::bake::bake;
-use gonio::layout::{MATERIAL_ANISOTROPIC, MATERIAL_D_1982, MATERIAL_SCHLICK};
+use gonio::layout::{DISTRIBUTION_PHONG, DISTRIBUTION_SHIFT, MATERIAL_ANISOTROPIC, MATERIAL_D_1982, MATERIAL_SCHLICK};
 use gonio::render::vulkan::{VulkanOptions, VulkanRenderer};
 use gonio::scene::Fresnel;
 use gonio::scene::load::load;
@@ -121,14 +121,44 @@ fn beckmann_s_distribution_has_the_printed_values() {
 }
 
 #[test]
-fn an_anisotropic_beckmann_distribution_has_the_printed_value() {
-    // A white mirror of slopes .1 and .3, lit and seen along the normal: D(0) F G / 4 = D(0) / 4.
-    let mut words = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.1, 0.0].map(f32::to_bits).to_vec();
-    words.extend([MATERIAL_SCHLICK | MATERIAL_ANISOTROPIC, 0.3f32.to_bits()]);
-    let sides = Sides::new().words(&models::FAMILY, "eval_rough_conductor pdf_rough_conductor", &[words]);
-    for (side, got) in sides[0].iter().enumerate() {
-        let d = 4.0 * f64::from(got[0]);
-        assert!((d - 10.6103).abs() < 5e-5, "side {side}: {d}");
+fn a_white_metal_of_other_facets_has_their_printed_and_their_own_values() {
+    let metal = |v: DVec3, l: DVec3, flags: u32, along: f64, across: f64| {
+        let mut words =
+            [v.x, v.y, v.z, l.x, l.y, l.z, 0.0, 1.0, 1.0, 0.0, along, 0.0].map(|x| (x as f32).to_bits()).to_vec();
+        words.extend([MATERIAL_SCHLICK | flags, (across as f32).to_bits()]);
+        words
+    };
+    // Beckmann's slopes .1 and .3, lit and seen along the normal: D(0) G F / 4 = D(0) / 4.
+    let mut sets = vec![metal(DVec3::Z, DVec3::Z, MATERIAL_ANISOTROPIC, 0.1, 0.3)];
+    // Phong's cos^2, alpha^2 = 1/2, each direction masked by Smith's 1 / (1 + Lambda). Of slopes like these Lambda is
+    // C (tan sin^3 / 3 - S), S the integral of sin^3 up to theta, and C = 3/4.
+    let angles = [(70.0, 50.0), (40.0, 85.0), (20.0, 20.0)];
+    let alpha = libm::sqrt(0.5);
+    for (view, light) in angles {
+        sets.push(metal(polar(view, 0.0), polar(light, 170.0), DISTRIBUTION_PHONG << DISTRIBUTION_SHIFT, alpha, alpha));
+    }
+    let results = Sides::new().words(&models::FAMILY, "eval_rough_conductor pdf_rough_conductor", &sets);
+    let masked = |w: DVec3| {
+        let sin = w.truncate().length();
+        1.0 / (1.0 + 0.75 * (sin.powi(4) / (3.0 * w.z) - (2.0 / 3.0 - w.z + w.z.powi(3) / 3.0)))
+    };
+    let mut expected = vec![(10.6103 / 4.0, 2e-5)];
+    for (view, light) in angles {
+        let (v, l) = (polar(view, 0.0), polar(light, 170.0));
+        let d = 4.0 / (2.0 * PI) * (l + v).normalize().z.powi(2);
+        // Lambda is a fit within 1 % for each direction.
+        expected.push((d * masked(v) * masked(l) / (4.0 * v.z), 0.02));
+    }
+    for (sides, (expected, bound)) in results.iter().zip(expected) {
+        for (side, got) in sides.iter().enumerate() {
+            let got = f64::from(got[0]);
+            assert!((got - expected).abs() < bound * expected, "side {side}: {got} for {expected}");
+        }
+        assert!(
+            sides
+                .iter()
+                .all(|side| side[..5].iter().map(|x| x.to_bits()).eq(sides[0][..5].iter().map(|x| x.to_bits())))
+        );
     }
 }
 
