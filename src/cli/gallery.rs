@@ -5,6 +5,7 @@ use super::interrupt::Interrupt;
 use super::setup::{BackendFlags, SceneFlags, bake_scene, film_of};
 use super::sheet::{self, Sheet};
 use crate::film::{Film, FilmError, OutputFile, Rect};
+use crate::plot::figure::Frame;
 use crate::plot::lecture::{caption, numbered, plots};
 use crate::plot::page::{Entry, Part, page};
 use crate::plot::panels::Picture;
@@ -16,8 +17,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-/// Size of the page's plots, pixels.
-const PLOT: [u32; 2] = [680, 460];
+/// Width of the page's plots, pixels: a telephone shows it without loss.
+const PLOT: u32 = 500;
 
 /// Renders the `.toml` files of `folder` into `into`: a PNG each, and `index.html`.
 pub fn run(folder: &Path, into: &Path, flags: &SceneFlags, backend: &BackendFlags) -> anyhow::Result<ExitCode> {
@@ -45,7 +46,13 @@ pub fn run(folder: &Path, into: &Path, flags: &SceneFlags, backend: &BackendFlag
 
 /// The scene's plots as SVG.
 fn plots_of(row: u32, title: &str, scene: &Scene) -> anyhow::Result<Vec<String>> {
-    let svg = |figure: &Figure| Ok(String::from_utf8_lossy(&render(figure, Format::Svg, PLOT)?).into_owned());
+    let svg = |figure: &Figure| {
+        let height = match figure.frame {
+            Frame::Bodies(_) | Frame::Ramp { .. } => 290,
+            _ => 470,
+        };
+        Ok(String::from_utf8_lossy(&render(figure, Format::Svg, [PLOT, height])?).into_owned())
+    };
     plots(row, title, scene)?.iter().map(svg).collect()
 }
 

@@ -197,17 +197,38 @@ pub fn plots(row: u32, title: &str, scene: &Scene) -> Result<Vec<Figure>, PlotEr
             curves::ramp_figure(&metals()),
             curves::ramp_figure(&metals()[..1]),
         ]),
-        (18, _) | (19, "coupled") => of_shelf(&|shelf, materials| vec![lobes::albedo_figure(shelf, materials)]),
-        (19, "anisotropy") => of_shelf(&|shelf, materials| vec![lobes::bodies_figure(shelf, materials, 45.0)]),
-        (19, "interreflection") => {
-            let rough = lobes::albedo_by_roughness_figure(&scene.materials, &[0.0, 60.0]);
-            Ok(vec![rough.map_err(PlotError::new)?])
-        }
+        (18, _) => of_shelf(&|shelf, materials| vec![lobes::albedo_figure(shelf, materials)]),
+        (19, "coupled") => of_shelf(&|shelf, materials| {
+            let glossy = |index: &&usize| scene.materials[**index].model != Model::Lambert;
+            vec![lobes::albedo_figure(shelf, &materials.iter().filter(glossy).copied().collect::<Vec<_>>())]
+        }),
+        (19, "anisotropy") => of_shelf(&|shelf, materials| {
+            let rough = |index: &&usize| is_rough_metal(&scene.materials[**index]);
+            vec![lobes::bodies_figure(shelf, &materials.iter().filter(rough).copied().collect::<Vec<_>>(), 45.0)]
+        }),
+        (19, "interreflection") => Ok(vec![before_and_after(scene)?]),
         (21, "directed") => Ok(vec![curves::spot_figure(&[1.0, 8.0, 64.0], 40.0)]),
         (23, "glass") => Ok(vec![curves::fresnel_figure(&[Interface::dielectric(1.5), Interface::dielectric(2.417)])]),
         (26, "zone-plate") => Ok(vec![curves::filter_figure()]),
         _ => Ok(Vec::new()),
     }
+}
+
+fn is_rough_metal(material: &Material) -> bool {
+    matches!(material.model, Model::RoughConductor { .. })
+}
+
+/// The scene's first rough metal at any roughness, without and with what its facets send to each other.
+fn before_and_after(scene: &Scene) -> Result<Figure, PlotError> {
+    let metal = |compensated: bool, name: &str| {
+        let mut metal = scene.materials.iter().find(|material| is_rough_metal(material)).cloned();
+        if let Some(Model::RoughConductor { compensate, .. }) = metal.as_mut().map(|metal| &mut metal.model) {
+            *compensate = compensated;
+        }
+        metal.map(|metal| Material { name: name.into(), ..metal })
+    };
+    let metals: Vec<Material> = metal(false, "before").into_iter().chain(metal(true, "after")).collect();
+    lobes::albedo_by_roughness_figure(&metals, &[0.0, 60.0]).map_err(PlotError::new)
 }
 
 /// What is fitted to the scene's first measured material (row 10 beside row 9).
