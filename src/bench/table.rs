@@ -244,6 +244,7 @@ mod tests {
             load_s: 0.0,
             bake: Default::default(),
             peak_bytes: None,
+            bake_bytes: None,
             setup: Vec::new(),
             rays,
             images: Vec::new(),
