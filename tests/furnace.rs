@@ -15,6 +15,7 @@ use gonio::bake::bake;
 use gonio::scene::*;
 use scenes::render_cpu;
 use statistics::Mean;
+use std::sync::Arc;
 
 const SAMPLES: u32 = 16;
 
@@ -118,6 +119,31 @@ fn lossy() -> Vec<(&'static str, Material)> {
     ]
 }
 
+/// Tables of a perfectly matte white surface, in the order of `measured`.
+fn tables() -> Vec<Table> {
+    let value = std::f32::consts::FRAC_1_PI;
+    let merl = Table::Merl { values: Arc::new(vec![value; 3 * 90 * 90 * 180]) };
+    let angles = [0.0, 0.7, std::f64::consts::FRAC_PI_2];
+    let directional = DirectionalTable {
+        light_angles: angles.to_vec(),
+        light_azimuths: 1,
+        fold: 1,
+        view_angles: angles.to_vec(),
+        view_azimuths: 4,
+        values: vec![value; 3 * 4 * 3 * 3],
+    };
+    vec![merl, Table::Directional(Arc::new(directional))]
+}
+
+/// Materials of `tables`.
+fn measured() -> Vec<(&'static str, Material)> {
+    ["measured, merl", "measured, directions"]
+        .into_iter()
+        .enumerate()
+        .map(|(index, name)| (name, white(Model::Measured { table: TableId(index as u32) })))
+        .collect()
+}
+
 /// A closed surface of material 0 under a white sky, with materials 1 and 2 of `parts`.
 fn configurations() -> Vec<(&'static str, Scene)> {
     let mut scene = empty_scene();
@@ -166,6 +192,37 @@ fn what_loses_nothing_vanishes_in_every_furnace() {
             let (value, error) = mean(&scene);
             assert!((value - 1.0).abs() <= DEVIATIONS * error + ENDS, "{name}, {place}: {value} +- {error}");
         }
+    }
+}
+
+#[test]
+fn measured_white_vanishes_in_a_furnace() {
+    let (place, furnace) = configurations().swap_remove(0);
+    for (name, material) in measured() {
+        let mut scene = Scene { tables: tables(), ..furnace.clone() };
+        scene.materials[0] = material;
+        let (value, error) = mean(&scene);
+        assert!((value - 1.0).abs() <= DEVIATIONS * error + ENDS, "{name}, {place}: {value} +- {error}");
+    }
+}
+
+#[test]
+fn every_model_is_in_a_furnace() {
+    let (models, rows) = (include_str!("../src/scene/material.rs"), include_str!("furnace.rs"));
+    let (_, after) = models.split_once("pub enum Model {\n").expect("the models");
+    let (variants, _) = after.split_once("\n}\n").expect("their end");
+    let names = variants.lines().filter_map(|line| {
+        let name = line.strip_prefix("    ")?.trim_end_matches([',', '{', ' ']);
+        let name = name.split('(').next()?;
+        name.chars().next()?.is_ascii_uppercase().then_some(name)
+    });
+    // It reflects nothing.
+    let names: Vec<&str> = names.filter(|name| *name != "Emissive").collect();
+    assert!(names.len() > 18, "{names:?}");
+    for name in names {
+        let row = format!("Model::{name}");
+        let found = rows.match_indices(&row).any(|(at, _)| !rows[at + row.len()..].starts_with(char::is_alphanumeric));
+        assert!(found, "no furnace has {row}");
     }
 }
 

@@ -6,9 +6,9 @@ use common::*;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use gonio::bake::{BakeError, SceneData, bake};
 use gonio::layout::{
-    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, INVALID, Material as Record, PARAMETER_MASK,
-    PARAMETER_METALLIC, PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U, PARAMETER_ROUGHNESS_V,
-    PARAMETER_WEIGHT, Ray, T_INFINITE,
+    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, INVALID, Material as Record, PARAMETER_ANISOTROPIC,
+    PARAMETER_MASK, PARAMETER_METALLIC, PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U,
+    PARAMETER_ROUGHNESS_V, PARAMETER_WEIGHT, Ray, T_INFINITE,
 };
 use gonio::scene::*;
 use gonio::shading::footprint::{Footprint, UvGradients, cone_footprint, mapped_normal, raised_normal};
@@ -423,6 +423,14 @@ fn each_parameter_takes_its_texture() {
     assert_eq!([across.m0, across.m1, across.m0_v, across.m1_v], [0.4, 0.2, 0.4, 0.05]);
     assert_eq!(apply_parameter(record, PARAMETER_METALLIC, Vec3::splat(0.5), 1.0).extra, 0.25);
     assert_eq!(apply_parameter(record, PARAMETER_WEIGHT, Vec3::splat(4.0), 1.0).extra, 1.0, "at most 1");
+    let shares = Record { k: Vec3::new(0.1, 0.2, 0.3), w0: 0.4, w1: 0.5, k_d: 0.6, k_s: 0.7, exponent: 0.8, ..record };
+    for which in 0..8 {
+        let applied = apply_parameter(shares, PARAMETER_ANISOTROPIC + which, Vec3::splat(0.5), 1.0);
+        let of = |m: Record| [m.k.x, m.k.y, m.k.z, m.w0, m.w1, m.k_d, m.k_s, m.exponent];
+        let mut want = of(shares);
+        want[which as usize] *= 0.5;
+        assert_eq!(of(applied), want, "{which}");
+    }
     assert_eq!(apply_parameter(record, PARAMETER_OPACITY, Vec3::splat(0.25), 1.0).k_t, 0.75);
     let half = Record { k_t: 0.5, ..record };
     assert_eq!(apply_parameter(half, PARAMETER_OPACITY, Vec3::splat(0.5), 1.0).k_t, 0.75, "half of a half");

@@ -1,5 +1,9 @@
 //! Mitsuba's XML scenes: what is read, what it means, and what is refused.
 
+#[path = "mitsuba/attributes.rs"]
+mod attributes;
+#[path = "mitsuba/lamps.rs"]
+mod lamps;
 #[path = "mitsuba/meaning.rs"]
 mod meaning;
 #[path = "mitsuba/published.rs"]

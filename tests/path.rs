@@ -166,7 +166,7 @@ fn glow(radiance: f32) -> Material {
 }
 
 #[test]
-fn one_light_gives_one_mean_as_samples_of_the_surface_of_the_light_and_of_both() {
+fn one_light_gives_one_mean_as_samples_of_the_surface_of_the_light_of_both_and_as_a_point() {
     // Large enough for the surface's own samples to find it.
     let light = object(Geometry::Sphere, Transform::scale(Vec3::splat(1.5)).then(Transform::translate(Vec3::Y * 3.0)));
     let scene = lit_floor(Some((light, glow(2.0))), 1);
@@ -181,8 +181,12 @@ fn one_light_gives_one_mean_as_samples_of_the_surface_of_the_light_and_of_both()
     light_only.materials[1].emission = Vec3::ZERO;
     let mut surface_only = both.clone();
     surface_only.header.emitter_count = 0;
+    // Light samples count in full, and what rays meet by chance that could have been one does not.
+    let mut light_in_full = both.clone();
+    light_in_full.header.shadowless = 1;
     let (both, surface) = (mean_of(&scene, &both, 1), mean_of(&scene, &surface, 1));
     assert_equal_means(both, surface, 0.0, "both ways, and the surface's alone");
+    assert_equal_means(both, mean_of(&scene, &light_in_full, 1), 0.0, "both ways, and the light's alone");
     let (light, rest) = (mean_of(&scene, &light_only, 1), mean_of(&scene, &surface_only, 1));
     assert!(light.value > 0.02 * both.value && rest.value > 0.02 * both.value, "{light:?} {rest:?} {both:?}");
     let sum = Mean { value: light.value + rest.value, error: light.error + rest.error };

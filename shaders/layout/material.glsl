@@ -122,7 +122,8 @@ struct Material {
     float m1_v;
     // Ashikhmin's n across the tangent.
     float exponent_v;
-    // Oren and Nayar's sigma; a plastic's diffuse reflectance from inside; a principled material's metallic; a blend's weight;
+    // Oren and Nayar's sigma; a plastic's diffuse reflectance from inside; a principled material's metallic (its other
+    // parameters are where `shading/principled` says); a blend's weight;
     // of a clear body the rank of its medium.
     float extra;
 };

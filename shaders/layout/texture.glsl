@@ -35,6 +35,15 @@ const uint PARAMETER_MASK = 8u;
 const uint PARAMETER_WEIGHT = 9u;
 const uint PARAMETER_NORMAL = 10u;
 const uint PARAMETER_BUMP = 11u;
+// Of a principled material.
+const uint PARAMETER_ANISOTROPIC = 12u;
+const uint PARAMETER_SPEC_TRANS = 13u;
+const uint PARAMETER_SPEC_TINT = 14u;
+const uint PARAMETER_SHEEN = 15u;
+const uint PARAMETER_SHEEN_TINT = 16u;
+const uint PARAMETER_FLATNESS = 17u;
+const uint PARAMETER_CLEARCOAT = 18u;
+const uint PARAMETER_CLEARCOAT_GLOSS = 19u;
 
 // Which channel of the texel counts; a single one stands for all three.
 const uint CHANNEL_R = 0u;

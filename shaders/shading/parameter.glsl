@@ -5,6 +5,13 @@
 #include "layout/mod.glsl"
 #include "shading/math.glsl"
 
+// Cut where no material of the scene is principled.
+#ifndef HAS_MODEL
+#define HAS_MODEL(model) true
+#endif
+#define PRINCIPLED(parameter, kept, constant) \
+    case parameter: if (HAS_MODEL(MODEL_PRINCIPLED)) kept = clamp_(constant * value.x, 0.0, 1.0); break;
+
 // No texture makes a lobe narrower: below, distributions overflow.
 const float ALPHA_LEAST = 1.0e-3;
 
@@ -47,10 +54,21 @@ Material apply_parameter(Material material, uint parameter, vec3 texel, float sc
     case PARAMETER_WEIGHT: result.extra = clamp_(material.extra * value.x, 0.0, 1.0); break;
     case PARAMETER_OPACITY: result.k_t = 1.0 - covered * clamp_(value.x, 0.0, 1.0); break;
     case PARAMETER_MASK: result.k_t = covered * texel.x >= scale ? 0.0 : 1.0; break;
+    // Where a principled material keeps them (`shading/principled`).
+    PRINCIPLED(PARAMETER_ANISOTROPIC, result.k.x, material.k.x)
+    PRINCIPLED(PARAMETER_SPEC_TRANS, result.k.y, material.k.y)
+    PRINCIPLED(PARAMETER_SPEC_TINT, result.k.z, material.k.z)
+    PRINCIPLED(PARAMETER_SHEEN, result.w0, material.w0)
+    PRINCIPLED(PARAMETER_SHEEN_TINT, result.w1, material.w1)
+    PRINCIPLED(PARAMETER_FLATNESS, result.k_d, material.k_d)
+    PRINCIPLED(PARAMETER_CLEARCOAT, result.k_s, material.k_s)
+    PRINCIPLED(PARAMETER_CLEARCOAT_GLOSS, result.exponent, material.exponent)
     // Normal and bump maps.
     default: break;
     }
     return result;
 }
+
+#undef PRINCIPLED
 
 #endif

@@ -1,8 +1,9 @@
 // Disney's material (Burley 2012 and 2015) with the parameters of Mitsuba 3's `principled`: diffuse with retro-reflection, sheen,
 // GGX facets between metal and glass, a clear coat.
 //
-// In the record: base colour `color`, roughness `m0`, metallic `extra`, index `eta`; in the table from `table` on: anisotropic,
-// spec_trans, spec_tint, sheen, sheen_tint, flatness, clearcoat, clearcoat_gloss. With spec_trans the frame's z leaves the outside.
+// In the record, where textures reach all of them: base colour `color`, roughness `m0`, metallic `extra`, index `eta`, anisotropic,
+// spec_trans and spec_tint `k`, sheen `w0`, sheen_tint `w1`, flatness `k_d`, clearcoat `k_s`, clearcoat_gloss `exponent`.
+// With spec_trans the frame's z leaves the outside.
 // Sources: Burley 2012, "Physically Based Shading at Disney"; Burley 2015, "Extending the Disney BRDF to a BSDF"; Jakob et al. 2022,
 // "Mitsuba 3", plugin `principled` (how the lobes are put together).
 #ifndef SHADING_PRINCIPLED_GLSL
@@ -18,21 +19,8 @@
 #include "shading/spectrum.glsl"
 #include "shading/warp.glsl"
 
-const uint PRINCIPLED_ANISOTROPIC = 0u;
-const uint PRINCIPLED_SPEC_TRANS = 1u;
-const uint PRINCIPLED_SPEC_TINT = 2u;
-const uint PRINCIPLED_SHEEN = 3u;
-const uint PRINCIPLED_SHEEN_TINT = 4u;
-const uint PRINCIPLED_FLATNESS = 5u;
-const uint PRINCIPLED_CLEARCOAT = 6u;
-const uint PRINCIPLED_CLEARCOAT_GLOSS = 7u;
 // Roughness of the clear coat's masking (Burley 2012, section 5.4).
 const float CLEARCOAT_MASKING = 0.25;
-
-// One parameter of the table. `which`: `PRINCIPLED_*`.
-float principled(Material material, uint which) {
-    return load_table(material.table + which);
-}
 
 // (1 - cos)^5 of a cosine, either sign.
 float schlick_weight(float cos_theta) {
@@ -43,7 +31,7 @@ float schlick_weight(float cos_theta) {
 
 // Roughness alpha along and across the tangent (Burley 2012, section 5.4).
 vec2 principled_alpha(Material material) {
-    float aspect = sqrt_(1.0 - 0.9 * principled(material, PRINCIPLED_ANISOTROPIC));
+    float aspect = sqrt_(1.0 - 0.9 * material.k.x);
     float r2 = material.m0 * material.m0;
     return vec2(max_(div(r2, aspect), M_MIN), max_(r2 * aspect, M_MIN));
 }
@@ -57,7 +45,7 @@ vec3 principled_tint(Material material) {
 // What the facets reflect of light on the outside: glass, tinted glass and metal. `f`: the glass's exact reflectance;
 // `o_h`: cosine to the facet.
 vec3 principled_fresnel(Material material, float f, float o_h) {
-    float tint = principled(material, PRINCIPLED_SPEC_TINT);
+    float tint = material.k.z;
     float metallic = material.extra;
     float root = div(material.eta.x - 1.0, material.eta.x + 1.0);
     float weight = schlick_weight(o_h);
@@ -77,25 +65,25 @@ float clearcoat_d(float alpha, float cos_h) {
 
 // Roughness alpha of the clear coat.
 float clearcoat_alpha(Material material) {
-    return mix_(0.1, 0.001, principled(material, PRINCIPLED_CLEARCOAT_GLOSS));
+    return mix_(0.1, 0.001, material.exponent);
 }
 
 // Diffuse part, retro-reflection and sheen times cosine, for light and viewer outside.
 vec3 principled_diffuse(Material material, vec3 wo, vec3 wi, float i_h) {
-    float brdf = (1.0 - material.extra) * (1.0 - principled(material, PRINCIPLED_SPEC_TRANS));
+    float brdf = (1.0 - material.extra) * (1.0 - material.k.y);
     float f_o = schlick_weight(wo.z);
     float f_i = schlick_weight(wi.z);
     float smooth_part = (1.0 - 0.5 * f_o) * (1.0 - 0.5 * f_i);
     float retro = (2.0 * material.m0) * (i_h * i_h);
     float retro_part = retro * ((f_o + f_i) + (f_o * f_i) * (retro - 1.0));
     // Hanrahan and Krueger's flat look, Burley 2012, section 5.3
-    float flatness = principled(material, PRINCIPLED_FLATNESS);
+    float flatness = material.k_d;
     float f_ss = mix_(1.0, 0.5 * retro, f_o) * mix_(1.0, 0.5 * retro, f_i);
     float flat_part = 1.25 * (f_ss * (rcp(wo.z + wi.z) - 0.5) + 0.5);
     vec3 base = material.color * ((brdf * INV_PI) * mix_(smooth_part + retro_part, flat_part, flatness));
-    float sheen_tint = principled(material, PRINCIPLED_SHEEN_TINT);
+    float sheen_tint = material.w1;
     vec3 sheen_color = vec3(1.0 - sheen_tint) + principled_tint(material) * sheen_tint;
-    float sheen = (principled(material, PRINCIPLED_SHEEN) * (1.0 - material.extra)) * schlick_weight(i_h);
+    float sheen = (material.w0 * (1.0 - material.extra)) * schlick_weight(i_h);
     return (base + sheen_color * sheen) * wi.z;
 }
 
@@ -104,7 +92,7 @@ Spectrum eval_principled(Material material, vec3 wo, vec3 wi) {
     float eta = eta_across(material, wo);
     bool outside = wo.z > 0.0;
     bool reflects = wo.z * wi.z > 0.0;
-    float bsdf = (1.0 - material.extra) * principled(material, PRINCIPLED_SPEC_TRANS);
+    float bsdf = (1.0 - material.extra) * material.k.y;
     vec3 wm = half_vector(wo, wi, eta);
     if (wm.z <= COS_MIN) {
         return spectrum_zero();
@@ -126,7 +114,7 @@ Spectrum eval_principled(Material material, vec3 wo, vec3 wi) {
         return spectrum_from_rgb(vec3((bsdf * f) * facets));
     }
     vec3 value = principled_fresnel(material, f, o_h) * facets + principled_diffuse(material, wo, wi, i_h);
-    float clearcoat = principled(material, PRINCIPLED_CLEARCOAT);
+    float clearcoat = material.k_s;
     if (clearcoat > 0.0) {
         float coat_f = mix_(0.04, 1.0, schlick_weight(o_h));
         float coat_d = clearcoat_d(clearcoat_alpha(material), wm.z);
@@ -141,15 +129,15 @@ vec2 principled_choice(Material material, vec3 wo) {
     if (wo.z <= 0.0) {
         return vec2(0.0, 0.0);
     }
-    float diffuse = (1.0 - material.extra) * (1.0 - principled(material, PRINCIPLED_SPEC_TRANS));
-    float coat = 0.25 * principled(material, PRINCIPLED_CLEARCOAT);
+    float diffuse = (1.0 - material.extra) * (1.0 - material.k.y);
+    float coat = 0.25 * material.k_s;
     float inv = rcp((1.0 + diffuse) + coat);
     return vec2(diffuse * inv, coat * inv);
 }
 
 // Probability that a facet reflects rather than refracts. `f`: its exact reflectance.
 float principled_reflection(Material material, float f, bool outside) {
-    float bsdf = (1.0 - material.extra) * principled(material, PRINCIPLED_SPEC_TRANS);
+    float bsdf = (1.0 - material.extra) * material.k.y;
     return outside ? 1.0 - bsdf * (1.0 - f) : f;
 }
 

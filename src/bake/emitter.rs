@@ -8,7 +8,7 @@ use super::{BakeError, SceneData};
 use crate::layout::{
     EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_ONE_SIDED, EMITTER_SPHERE, EMITTER_TEXTURED, EMITTER_TRIANGLE, Emitter,
     INVALID, Instance, KIND_SPHERE, LIGHT_DIRECTIONAL, LIGHT_SPOT, Light, MATERIAL_EMIT_ONE_SIDED, MODEL_BLEND,
-    MODEL_EMISSIVE, Material, PARAMETER_COLOR, PARAMETER_EMISSION,
+    MODEL_EMISSIVE, Material, PARAMETER_COLOR, PARAMETER_EMISSION, PARAMETER_MASK, PARAMETER_OPACITY,
 };
 use crate::scene::{Background, Scene};
 use crate::shading::material::{emission_material, own_weight};
@@ -138,7 +138,8 @@ fn collect_instance(data: &SceneData, index: usize, primitives: &dyn Fn(usize) -
         // What a blend shows is found where it is met.
         material.model == MODEL_BLEND
             || data.textures[first..first + count].iter().any(|texture| match texture.parameter {
-                PARAMETER_EMISSION => true,
+                // Holes emit nothing.
+                PARAMETER_EMISSION | PARAMETER_OPACITY | PARAMETER_MASK => true,
                 PARAMETER_COLOR => material.model == MODEL_EMISSIVE,
                 _ => false,
             })

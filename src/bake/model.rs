@@ -158,7 +158,7 @@ fn bake_model(
             baked.flags |= if *nonlinear { MATERIAL_NONLINEAR } else { 0 };
             plastic_table(baked, tables);
         }
-        Model::Principled(principled) => bake_principled(principled, baked, tables),
+        Model::Principled(principled) => bake_principled(principled, baked),
         Model::Measured { table } => match &measured[table.0 as usize] {
             Table::Merl { values } => measured_table(values, baked, tables),
             Table::Directional(table) => tabulated_table(table, baked, tables),
@@ -232,26 +232,17 @@ fn bake_fresnel(fresnel: Fresnel, baked: &mut Material) {
     }
 }
 
-/// Roughness, metallic and index are in the record, where textures reach them; the rest in the table.
-fn bake_principled(principled: &Principled, baked: &mut Material, tables: &mut Vec<f32>) {
+fn bake_principled(principled: &Principled, baked: &mut Material) {
     let p = principled;
     baked.model = MODEL_PRINCIPLED;
     (baked.m0, baked.extra) = (p.roughness, p.metallic);
     baked.eta = Vec3::splat(p.eta.max(1.0 + ETA_LEAST));
     baked.flags |= if p.anisotropic == 0.0 { 0 } else { MATERIAL_ANISOTROPIC };
     baked.flags |= if p.spec_trans == 0.0 { 0 } else { MATERIAL_TRANSMISSIVE };
-    baked.table = tables.len() as u32;
-    // The order of `shading/principled`.
-    tables.extend([
-        p.anisotropic,
-        p.spec_trans,
-        p.spec_tint,
-        p.sheen,
-        p.sheen_tint,
-        p.flatness,
-        p.clearcoat,
-        p.clearcoat_gloss,
-    ]);
+    // The places that `shading/principled` names.
+    baked.k = Vec3::new(p.anisotropic, p.spec_trans, p.spec_tint);
+    (baked.w0, baked.w1) = (p.sheen, p.sheen_tint);
+    (baked.k_d, baked.k_s, baked.exponent) = (p.flatness, p.clearcoat, p.clearcoat_gloss);
 }
 
 /// What a material is made of, if of others.

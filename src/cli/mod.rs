@@ -162,7 +162,10 @@ fn exit_code(error: &anyhow::Error) -> u8 {
         if let Some(error) = cause.downcast_ref::<FilmError>() {
             return error.exit_code();
         }
-        if cause.is::<BakeError>() || cause.is::<MergeError>() {
+        if let Some(error) = cause.downcast_ref::<BakeError>() {
+            return if matches!(error, BakeError::Aborted) { EXIT_INTERRUPTED } else { EXIT_BAD_INPUT };
+        }
+        if cause.is::<MergeError>() {
             return EXIT_BAD_INPUT;
         }
         if cause.is::<io::Error>() {

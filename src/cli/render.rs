@@ -3,10 +3,10 @@
 use super::gallery;
 use super::interrupt::Interrupt;
 use super::output::{OutputFlags, print_report};
-use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, crop_of, film_of};
+use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, bake_scene_until, crop_of, film_of};
 use super::sheet::{self, Sheet};
 use super::{Usage, progress, team};
-use crate::bake::SceneData;
+use crate::bake::{BakeError, SceneData};
 use crate::film::write::{Aov, Format};
 use crate::film::{Film, OutputFile, Rect};
 use crate::render::team::{Member, Order, Share, render};
@@ -137,7 +137,7 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let mut scenes = sheet.scenes();
     loop {
         let mut next =
-            || scenes.next().map(|scene| scene.and_then(|(label, scene)| Ok((label, prepare(args, scene)?))));
+            || scenes.next().map(|scene| scene.and_then(|(label, scene)| Ok((label, prepare(args, scene, &interrupt)?))));
         let prepared = if films.is_empty() {
             let unfinished: Vec<&OutputFile> = std::iter::once(&output).chain(&stats_file).collect();
             interrupt.expendable(&unfinished, next)
@@ -145,7 +145,13 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
             next()
         };
         let Some(prepared) = prepared else { break };
-        let (label, prepared) = prepared?;
+        let (label, prepared) = match prepared {
+            Err(error) if matches!(error.downcast_ref(), Some(BakeError::Aborted)) => {
+                interrupted = interrupt.exit_code();
+                break;
+            }
+            prepared => prepared?,
+        };
         let mut developed = develop(args, &prepared, &interrupt, !quiet && !args.no_progress)?;
         if let Some(label) = label {
             developed.stats["panel"] = label.into();
@@ -159,6 +165,8 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         }
     }
     match &mut films[..] {
+        // Interrupted before there was anything to save.
+        [] => return Ok(interrupted.map_or(ExitCode::SUCCESS, ExitCode::from)),
         [(_, film)] if !sheet.is_divided() => args.picture.write(film, format, &args.aov, output)?,
         panels => sheet::write(&sheet, panels, &args.picture, output)?,
     }
@@ -192,10 +200,10 @@ struct Prepared {
 }
 
 /// Bakes a scene as the flags want it.
-fn prepare(args: &RenderArgs, scene: Scene) -> anyhow::Result<Prepared> {
+fn prepare(args: &RenderArgs, scene: Scene, interrupt: &Interrupt) -> anyhow::Result<Prepared> {
     let crop = crop_of(&scene, args.crop)?;
     let start = Instant::now();
-    let mut data = bake_scene(&scene)?;
+    let mut data = bake_scene_until(&scene, &|| interrupt.exit_code().is_some())?;
     data.header.aovs = u32::from(!args.aov.is_empty());
     data.header.hide_background |= u32::from(args.transparent);
     Ok(Prepared { scene, crop, data, bake_time: start.elapsed() })

@@ -1,7 +1,7 @@
 //! What render, parity and others share: from flags to a baked scene and a renderer.
 
 use super::{Usage, exact, progress, team};
-use crate::bake::{SceneData, bake};
+use crate::bake::{SceneData, Watch, bake_watched};
 use crate::film::{Film, FilmSpec, Rect};
 use crate::render::cpu::CpuRenderer;
 use crate::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
@@ -168,9 +168,16 @@ impl SceneFlags {
 
 /// Bakes a scene and prints what baking dropped.
 pub fn bake_scene(scene: &Scene) -> anyhow::Result<SceneData> {
+    bake_scene_until(scene, &|| false)
+}
+
+/// The same; gives up with `BakeError::Aborted` when `abort` says so.
+pub fn bake_scene_until(scene: &Scene, abort: &(dyn Fn() -> bool + Sync)) -> anyhow::Result<SceneData> {
     let bar = progress::baking(scene);
-    let data = bake(scene).with_context(|| scene.name.clone())?;
+    log::info!("{}: baking", scene.name);
+    let data = bake_watched(scene, &Watch { abort, advance: &|count| bar.inc(count) });
     bar.finish_and_clear();
+    let data = data.with_context(|| scene.name.clone())?;
     for warning in &data.warnings {
         log::warn!("{warning}");
     }

@@ -20,8 +20,9 @@ use std::time::Instant;
 
 /// Side of a block of the documentation's pictures that is compared as one pixel: below it, filters and JPEG differ.
 const BLOCK: u32 = 4;
-/// Samples of each pixel of a documentation picture.
-const DISPLAY_SAMPLES: u32 = 32;
+/// Samples of each pixel of a documentation picture: 128 of each block, after which noise is a code or two beside the eight
+/// that are allowed.
+const DISPLAY_SAMPLES: u32 = 8;
 
 #[derive(Args)]
 #[command(after_help = "\

@@ -125,7 +125,8 @@ pub struct Material {
     pub m1_v: f32,
     /// Ashikhmin's n across the tangent.
     pub exponent_v: f32,
-    /// Oren and Nayar's sigma; a plastic's diffuse reflectance from inside; a principled material's metallic; a blend's weight;
+    /// Oren and Nayar's sigma; a plastic's diffuse reflectance from inside; a principled material's metallic (its other
+    /// parameters are where `shading/principled` says); a blend's weight;
     /// of a clear body the rank of its medium.
     pub extra: f32,
 }

@@ -35,6 +35,15 @@ pub const PARAMETER_MASK: u32 = 8;
 pub const PARAMETER_WEIGHT: u32 = 9;
 pub const PARAMETER_NORMAL: u32 = 10;
 pub const PARAMETER_BUMP: u32 = 11;
+// Of a principled material.
+pub const PARAMETER_ANISOTROPIC: u32 = 12;
+pub const PARAMETER_SPEC_TRANS: u32 = 13;
+pub const PARAMETER_SPEC_TINT: u32 = 14;
+pub const PARAMETER_SHEEN: u32 = 15;
+pub const PARAMETER_SHEEN_TINT: u32 = 16;
+pub const PARAMETER_FLATNESS: u32 = 17;
+pub const PARAMETER_CLEARCOAT: u32 = 18;
+pub const PARAMETER_CLEARCOAT_GLOSS: u32 = 19;
 
 /// Which channel of the texel counts; a single one stands for all three.
 pub const CHANNEL_R: u32 = 0;

@@ -222,6 +222,15 @@ pub enum Parameter {
     Normal,
     /// Height.
     Bump,
+    // Of a `Principled`.
+    Anisotropic,
+    SpecTrans,
+    SpecTint,
+    Sheen,
+    SheenTint,
+    Flatness,
+    Clearcoat,
+    ClearcoatGloss,
 }
 
 /// Which channel of a texture a scalar parameter takes; `Rgb` for colours.

@@ -52,7 +52,7 @@ pub fn eval_material(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3)
         MODEL_ROUGH_DIELECTRIC => eval_rough_dielectric(material, wo, wi),
         MODEL_PLASTIC => eval_plastic(material, wo, wi),
         MODEL_ROUGH_PLASTIC => eval_rough_plastic(scene, material, wo, wi),
-        MODEL_PRINCIPLED => eval_principled(scene, material, wo, wi),
+        MODEL_PRINCIPLED => eval_principled(material, wo, wi),
         MODEL_MEASURED => eval_measured(scene, material, wo, wi),
         MODEL_TABULATED => eval_tabulated(scene, material, wo, wi),
         _ => spectrum_zero(),
@@ -75,7 +75,7 @@ pub fn pdf_material(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) 
         MODEL_ROUGH_DIELECTRIC => pdf_rough_dielectric(material, wo, wi),
         MODEL_PLASTIC => pdf_plastic(material, wo, wi),
         MODEL_ROUGH_PLASTIC => pdf_rough_plastic(scene, material, wo, wi),
-        MODEL_PRINCIPLED => pdf_principled(scene, material, wo, wi),
+        MODEL_PRINCIPLED => pdf_principled(material, wo, wi),
         MODEL_MEASURED => pdf_measured(scene, material, wo, wi),
         MODEL_TABULATED => pdf_tabulated(scene, material, wo, wi),
         _ => 0.0,
@@ -113,7 +113,7 @@ pub fn sample_material(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2
         MODEL_ROUGH_DIELECTRIC => sample_rough_dielectric(material, wo, u, u_lobe),
         MODEL_THIN_DIELECTRIC => sample_thin_dielectric(material, wo, u_lobe),
         MODEL_PLASTIC => sample_plastic(material, wo, u, u_lobe),
-        MODEL_PRINCIPLED => sample_principled(scene, material, wo, u, u_lobe),
+        MODEL_PRINCIPLED => sample_principled(material, wo, u, u_lobe),
         MODEL_NULL => sample_null(wo),
         _ => {
             let direction = sample_direction(scene, material, wo, u, u_lobe);

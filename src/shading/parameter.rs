@@ -1,9 +1,11 @@
 //! What a texture's value does to a material (row 27).
 
 use crate::layout::{
-    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, Material, PARAMETER_COLOR, PARAMETER_EMISSION, PARAMETER_MASK,
+    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, Material, PARAMETER_ANISOTROPIC, PARAMETER_CLEARCOAT,
+    PARAMETER_CLEARCOAT_GLOSS, PARAMETER_COLOR, PARAMETER_EMISSION, PARAMETER_FLATNESS, PARAMETER_MASK,
     PARAMETER_METALLIC, PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U, PARAMETER_ROUGHNESS_V,
-    PARAMETER_SPECULAR_COLOR, PARAMETER_WEIGHT,
+    PARAMETER_SHEEN, PARAMETER_SHEEN_TINT, PARAMETER_SPEC_TINT, PARAMETER_SPEC_TRANS, PARAMETER_SPECULAR_COLOR,
+    PARAMETER_WEIGHT,
 };
 use crate::shading::math::{clamp_, max_};
 use glam::{Vec3, Vec4};
@@ -49,6 +51,15 @@ pub fn apply_parameter(material: Material, parameter: u32, texel: Vec3, scale: f
         PARAMETER_METALLIC | PARAMETER_WEIGHT => result.extra = clamp_(material.extra * value.x, 0.0, 1.0),
         PARAMETER_OPACITY => result.k_t = 1.0 - covered * clamp_(value.x, 0.0, 1.0),
         PARAMETER_MASK => result.k_t = if covered * texel.x >= scale { 0.0 } else { 1.0 },
+        // Where a principled material keeps them (`shading/principled`).
+        PARAMETER_ANISOTROPIC => result.k.x = clamp_(material.k.x * value.x, 0.0, 1.0),
+        PARAMETER_SPEC_TRANS => result.k.y = clamp_(material.k.y * value.x, 0.0, 1.0),
+        PARAMETER_SPEC_TINT => result.k.z = clamp_(material.k.z * value.x, 0.0, 1.0),
+        PARAMETER_SHEEN => result.w0 = clamp_(material.w0 * value.x, 0.0, 1.0),
+        PARAMETER_SHEEN_TINT => result.w1 = clamp_(material.w1 * value.x, 0.0, 1.0),
+        PARAMETER_FLATNESS => result.k_d = clamp_(material.k_d * value.x, 0.0, 1.0),
+        PARAMETER_CLEARCOAT => result.k_s = clamp_(material.k_s * value.x, 0.0, 1.0),
+        PARAMETER_CLEARCOAT_GLOSS => result.exponent = clamp_(material.exponent * value.x, 0.0, 1.0),
         // Normal and bump maps.
         _ => {}
     }

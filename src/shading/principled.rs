@@ -1,12 +1,13 @@
 //! Disney's material (Burley 2012 and 2015) with the parameters of Mitsuba 3's `principled`: diffuse with retro-reflection, sheen,
 //! GGX facets between metal and glass, a clear coat.
 //!
-//! In the record: base colour `color`, roughness `m0`, metallic `extra`, index `eta`; in the table from `table` on: anisotropic,
-//! spec_trans, spec_tint, sheen, sheen_tint, flatness, clearcoat, clearcoat_gloss. With spec_trans the frame's z leaves the outside.
+//! In the record, where textures reach all of them: base colour `color`, roughness `m0`, metallic `extra`, index `eta`, anisotropic,
+//! spec_trans and spec_tint `k`, sheen `w0`, sheen_tint `w1`, flatness `k_d`, clearcoat `k_s`, clearcoat_gloss `exponent`.
+//! With spec_trans the frame's z leaves the outside.
 //! Sources: Burley 2012, "Physically Based Shading at Disney"; Burley 2015, "Extending the Disney BRDF to a BSDF"; Jakob et al. 2022,
 //! "Mitsuba 3", plugin `principled` (how the lobes are put together).
 
-use crate::layout::{DISTRIBUTION_TROWBRIDGE_REITZ, Material, SceneView, load_table};
+use crate::layout::{DISTRIBUTION_TROWBRIDGE_REITZ, Material};
 use crate::shading::bsdf::{BsdfSample, SAMPLE_TRANSMIT, finish_sample, no_sample};
 use crate::shading::distribution::{facet_d, pdf_facet, sample_facet, smith_g_separable};
 use crate::shading::fresnel::{fresnel_dielectric, refraction_root};
@@ -20,22 +21,8 @@ use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_luminance, 
 use crate::shading::warp::square_to_cosine_hemisphere;
 use glam::{Vec2, Vec3};
 
-pub const PRINCIPLED_ANISOTROPIC: u32 = 0;
-pub const PRINCIPLED_SPEC_TRANS: u32 = 1;
-pub const PRINCIPLED_SPEC_TINT: u32 = 2;
-pub const PRINCIPLED_SHEEN: u32 = 3;
-pub const PRINCIPLED_SHEEN_TINT: u32 = 4;
-pub const PRINCIPLED_FLATNESS: u32 = 5;
-pub const PRINCIPLED_CLEARCOAT: u32 = 6;
-pub const PRINCIPLED_CLEARCOAT_GLOSS: u32 = 7;
 /// Roughness of the clear coat's masking (Burley 2012, section 5.4).
 pub const CLEARCOAT_MASKING: f32 = 0.25;
-
-/// One parameter of the table. `which`: `PRINCIPLED_*`.
-#[inline]
-pub fn principled(scene: &SceneView, material: &Material, which: u32) -> f32 {
-    load_table(scene, material.table + which)
-}
 
 /// (1 - cos)^5 of a cosine, either sign.
 #[inline]
@@ -47,8 +34,8 @@ pub fn schlick_weight(cos_theta: f32) -> f32 {
 
 /// Roughness alpha along and across the tangent (Burley 2012, section 5.4).
 #[inline]
-pub fn principled_alpha(scene: &SceneView, material: &Material) -> Vec2 {
-    let aspect = sqrt_(1.0 - 0.9 * principled(scene, material, PRINCIPLED_ANISOTROPIC));
+pub fn principled_alpha(material: &Material) -> Vec2 {
+    let aspect = sqrt_(1.0 - 0.9 * material.k.x);
     let r2 = material.m0 * material.m0;
     Vec2::new(max_(div(r2, aspect), M_MIN), max_(r2 * aspect, M_MIN))
 }
@@ -63,8 +50,8 @@ pub fn principled_tint(material: &Material) -> Vec3 {
 /// What the facets reflect of light on the outside: glass, tinted glass and metal. `f`: the glass's exact reflectance;
 /// `o_h`: cosine to the facet.
 #[inline]
-pub fn principled_fresnel(scene: &SceneView, material: &Material, f: f32, o_h: f32) -> Vec3 {
-    let tint = principled(scene, material, PRINCIPLED_SPEC_TINT);
+pub fn principled_fresnel(material: &Material, f: f32, o_h: f32) -> Vec3 {
+    let tint = material.k.z;
     let metallic = material.extra;
     let root = div(material.eta.x - 1.0, material.eta.x + 1.0);
     let weight = schlick_weight(o_h);
@@ -85,37 +72,37 @@ pub fn clearcoat_d(alpha: f32, cos_h: f32) -> f32 {
 
 /// Roughness alpha of the clear coat.
 #[inline]
-pub fn clearcoat_alpha(scene: &SceneView, material: &Material) -> f32 {
-    mix_(0.1, 0.001, principled(scene, material, PRINCIPLED_CLEARCOAT_GLOSS))
+pub fn clearcoat_alpha(material: &Material) -> f32 {
+    mix_(0.1, 0.001, material.exponent)
 }
 
 /// Diffuse part, retro-reflection and sheen times cosine, for light and viewer outside.
 #[inline]
-pub fn principled_diffuse(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3, i_h: f32) -> Vec3 {
-    let brdf = (1.0 - material.extra) * (1.0 - principled(scene, material, PRINCIPLED_SPEC_TRANS));
+pub fn principled_diffuse(material: &Material, wo: Vec3, wi: Vec3, i_h: f32) -> Vec3 {
+    let brdf = (1.0 - material.extra) * (1.0 - material.k.y);
     let f_o = schlick_weight(wo.z);
     let f_i = schlick_weight(wi.z);
     let smooth_part = (1.0 - 0.5 * f_o) * (1.0 - 0.5 * f_i);
     let retro = (2.0 * material.m0) * (i_h * i_h);
     let retro_part = retro * ((f_o + f_i) + (f_o * f_i) * (retro - 1.0));
     // Hanrahan and Krueger's flat look, Burley 2012, section 5.3
-    let flatness = principled(scene, material, PRINCIPLED_FLATNESS);
+    let flatness = material.k_d;
     let f_ss = mix_(1.0, 0.5 * retro, f_o) * mix_(1.0, 0.5 * retro, f_i);
     let flat_part = 1.25 * (f_ss * (rcp(wo.z + wi.z) - 0.5) + 0.5);
     let base = material.color * ((brdf * INV_PI) * mix_(smooth_part + retro_part, flat_part, flatness));
-    let sheen_tint = principled(scene, material, PRINCIPLED_SHEEN_TINT);
+    let sheen_tint = material.w1;
     let sheen_color = Vec3::splat(1.0 - sheen_tint) + principled_tint(material) * sheen_tint;
-    let sheen = (principled(scene, material, PRINCIPLED_SHEEN) * (1.0 - material.extra)) * schlick_weight(i_h);
+    let sheen = (material.w0 * (1.0 - material.extra)) * schlick_weight(i_h);
     (base + sheen_color * sheen) * wi.z
 }
 
 /// All lobes times cosine, per steradian.
 #[inline]
-pub fn eval_principled(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
+pub fn eval_principled(material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
     let eta = eta_across(material, wo);
     let outside = wo.z > 0.0;
     let reflects = wo.z * wi.z > 0.0;
-    let bsdf = (1.0 - material.extra) * principled(scene, material, PRINCIPLED_SPEC_TRANS);
+    let bsdf = (1.0 - material.extra) * material.k.y;
     let wm = half_vector(wo, wi, eta);
     if wm.z <= COS_MIN {
         return spectrum_zero();
@@ -123,7 +110,7 @@ pub fn eval_principled(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec
     let o_h = dot3(wo, wm);
     let i_h = dot3(wi, wm);
     let f = fresnel_dielectric(min_(o_h.abs(), 1.0), eta);
-    let alpha = principled_alpha(scene, material);
+    let alpha = principled_alpha(material);
     let d = facet_d(DISTRIBUTION_TROWBRIDGE_REITZ, alpha.x, alpha.y, 1.0, wm);
     let g = smith_g_separable(DISTRIBUTION_TROWBRIDGE_REITZ, alpha.x, alpha.y, wo, wi);
     if !reflects {
@@ -136,12 +123,11 @@ pub fn eval_principled(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec
     if !outside {
         return spectrum_from_rgb(Vec3::splat((bsdf * f) * facets));
     }
-    let mut value =
-        principled_fresnel(scene, material, f, o_h) * facets + principled_diffuse(scene, material, wo, wi, i_h);
-    let clearcoat = principled(scene, material, PRINCIPLED_CLEARCOAT);
+    let mut value = principled_fresnel(material, f, o_h) * facets + principled_diffuse(material, wo, wi, i_h);
+    let clearcoat = material.k_s;
     if clearcoat > 0.0 {
         let coat_f = mix_(0.04, 1.0, schlick_weight(o_h));
-        let coat_d = clearcoat_d(clearcoat_alpha(scene, material), wm.z);
+        let coat_d = clearcoat_d(clearcoat_alpha(material), wm.z);
         let coat_g = smith_g_separable(DISTRIBUTION_TROWBRIDGE_REITZ, CLEARCOAT_MASKING, CLEARCOAT_MASKING, wo, wi);
         value += Vec3::splat(((0.25 * clearcoat) * (coat_f * coat_d)) * (coat_g * wi.z));
     }
@@ -150,26 +136,26 @@ pub fn eval_principled(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec
 
 /// Probabilities of the diffuse part (x) and of the clear coat (y); the rest is the facets'.
 #[inline]
-pub fn principled_choice(scene: &SceneView, material: &Material, wo: Vec3) -> Vec2 {
+pub fn principled_choice(material: &Material, wo: Vec3) -> Vec2 {
     if wo.z <= 0.0 {
         return Vec2::new(0.0, 0.0);
     }
-    let diffuse = (1.0 - material.extra) * (1.0 - principled(scene, material, PRINCIPLED_SPEC_TRANS));
-    let coat = 0.25 * principled(scene, material, PRINCIPLED_CLEARCOAT);
+    let diffuse = (1.0 - material.extra) * (1.0 - material.k.y);
+    let coat = 0.25 * material.k_s;
     let inv = rcp((1.0 + diffuse) + coat);
     Vec2::new(diffuse * inv, coat * inv)
 }
 
 /// Probability that a facet reflects rather than refracts. `f`: its exact reflectance.
 #[inline]
-pub fn principled_reflection(scene: &SceneView, material: &Material, f: f32, outside: bool) -> f32 {
-    let bsdf = (1.0 - material.extra) * principled(scene, material, PRINCIPLED_SPEC_TRANS);
+pub fn principled_reflection(material: &Material, f: f32, outside: bool) -> f32 {
+    let bsdf = (1.0 - material.extra) * material.k.y;
     if outside { 1.0 - bsdf * (1.0 - f) } else { f }
 }
 
 /// Density of `sample_principled` over the sphere.
 #[inline]
-pub fn pdf_principled(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> f32 {
+pub fn pdf_principled(material: &Material, wo: Vec3, wi: Vec3) -> f32 {
     let eta = eta_across(material, wo);
     let wm = half_vector(wo, wi, eta);
     if wm.z <= COS_MIN {
@@ -180,23 +166,22 @@ pub fn pdf_principled(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3
     // Seen from inside: the view through the surface's mirror, whose facets are the same.
     let view = Vec3::new(wo.x, wo.y, wo.z.abs());
     let facing = if outside { wm } else { Vec3::new(-wm.x, -wm.y, wm.z) };
-    let alpha = principled_alpha(scene, material);
-    let choice = principled_choice(scene, material, wo);
+    let alpha = principled_alpha(material);
+    let choice = principled_choice(material, wo);
     let mut facets = pdf_facet(DISTRIBUTION_TROWBRIDGE_REITZ, alpha.x, alpha.y, view, facing);
     facets *= (1.0 - choice.x) - choice.y;
-    let reflection = principled_reflection(scene, material, fresnel_dielectric(min_(o_h.abs(), 1.0), eta), outside);
+    let reflection = principled_reflection(material, fresnel_dielectric(min_(o_h.abs(), 1.0), eta), outside);
     if wo.z * wi.z <= 0.0 {
         return ((1.0 - reflection) * facets) * refraction_jacobian(o_h, dot3(wi, wm), eta);
     }
-    let coat =
-        if choice.y > 0.0 { choice.y * (clearcoat_d(clearcoat_alpha(scene, material), wm.z) * wm.z) } else { 0.0 };
+    let coat = if choice.y > 0.0 { choice.y * (clearcoat_d(clearcoat_alpha(material), wm.z) * wm.z) } else { 0.0 };
     div(reflection * facets + coat, 4.0 * o_h.abs()) + choice.x * (max_(wi.z, 0.0) * INV_PI)
 }
 
 /// Cosine-weighted, or about a facet of the clear coat or of the main lobe, there reflected or refracted.
 /// `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, chooses.
 #[inline]
-pub fn sample_principled(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> BsdfSample {
+pub fn sample_principled(material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> BsdfSample {
     if wo.z.abs() <= COS_MIN {
         return no_sample();
     }
@@ -204,24 +189,24 @@ pub fn sample_principled(scene: &SceneView, material: &Material, wo: Vec3, u: Ve
     let side = if outside { 1.0 } else { -1.0 };
     let eta = eta_across(material, wo);
     let view = Vec3::new(wo.x, wo.y, wo.z * side);
-    let choice = principled_choice(scene, material, wo);
+    let choice = principled_choice(material, wo);
     let mut upper = square_to_cosine_hemisphere(u);
     let mut refracts = false;
     if u_lobe >= choice.x && u_lobe < choice.x + choice.y {
-        let a2 = clearcoat_alpha(scene, material) * clearcoat_alpha(scene, material);
+        let a2 = clearcoat_alpha(material) * clearcoat_alpha(material);
         // The inverse of the integral of D cos: 1 - cos^2 = (a2^(1 - u) - a2) / (1 - a2)
         let cos2 = clamp_(div(1.0 - pow_(a2, 1.0 - u.x), 1.0 - a2), 0.0, 1.0);
         let sin_h = sqrt_(1.0 - cos2);
         upper = reflect_about(view, Vec3::new(sin_h * cos_turns(u.y), sin_h * sin_turns(u.y), sqrt_(cos2)));
     }
     if u_lobe >= choice.x + choice.y {
-        let alpha = principled_alpha(scene, material);
+        let alpha = principled_alpha(material);
         let wm = sample_facet(DISTRIBUTION_TROWBRIDGE_REITZ, alpha.x, alpha.y, view, u);
         let o_h = min_(dot3(view, wm), 1.0);
         if o_h <= COS_MIN {
             return no_sample();
         }
-        let reflection = principled_reflection(scene, material, fresnel_dielectric(o_h, eta), outside);
+        let reflection = principled_reflection(material, fresnel_dielectric(o_h, eta), outside);
         // What is left of u_lobe once the lobe is chosen, 0..1
         let rest = div(u_lobe - (choice.x + choice.y), max_((1.0 - choice.x) - choice.y, 1.0e-6));
         refracts = rest >= reflection;
@@ -240,7 +225,7 @@ pub fn sample_principled(scene: &SceneView, material: &Material, wo: Vec3, u: Ve
         return no_sample();
     }
     let wi = Vec3::new(upper.x, upper.y, upper.z * side);
-    let pdf = pdf_principled(scene, material, wo, wi);
+    let pdf = pdf_principled(material, wo, wi);
     let flags = if refracts { SAMPLE_TRANSMIT } else { 0 };
-    finish_sample(wi, pdf, eval_principled(scene, material, wo, wi), if refracts { eta } else { 1.0 }, flags)
+    finish_sample(wi, pdf, eval_principled(material, wo, wi), if refracts { eta } else { 1.0 }, flags)
 }

@@ -1,7 +1,7 @@
 //! Twins that parity kernels run through others.
 
 /// Twins that no parity kernel calls by name: the function, and the one through which a kernel runs it.
-pub const THROUGH: [(&str, &str); 125] = [
+pub const THROUGH: [(&str, &str); 124] = [
     ("eval_lambert", "eval_material"),
     ("eval_phong", "eval_material"),
     ("eval_blinn_phong", "eval_material"),
@@ -82,7 +82,6 @@ pub const THROUGH: [(&str, &str); 125] = [
     ("pdf_rough_plastic", "pdf_material"),
     ("pdf_ward", "pdf_material"),
     ("phong_exponent", "sample_facet"),
-    ("principled", "eval_principled"),
     ("principled_alpha", "eval_principled"),
     ("principled_choice", "sample_principled"),
     ("principled_diffuse", "eval_principled"),

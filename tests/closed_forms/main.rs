@@ -37,12 +37,23 @@ fn assert_mean(found: Mean, wanted: f64, what: &str) {
     found.assert_is(wanted, 2.0e-5, what);
 }
 
+/// A memory path of the device, and the most rays a chunk may have.
+type Path = (FetchChoice, Option<u32>);
+const ANY_CHUNK: Path = (FetchChoice::Texel, None);
+const SMALL_CHUNKS: Path = (FetchChoice::Storage, Some(100));
+
 /// Both memory paths of the device, with chunks of any size and very small ones, give the CPU's bits. False without a device.
 #[track_caller]
 fn same_on_the_device(scene: &Scene, what: &str) -> bool {
+    same_by(scene, &[ANY_CHUNK, SMALL_CHUNKS], what)
+}
+
+/// The device gives the CPU's bits by each of `paths`. False without a device.
+#[track_caller]
+fn same_by(scene: &Scene, paths: &[Path], what: &str) -> bool {
     let data = bake(scene).expect("bakes");
     let reference = render_cpu(scene, &data);
-    for (fetch, chunk) in [(FetchChoice::Texel, None), (FetchChoice::Storage, Some(100))] {
+    for &(fetch, chunk) in paths {
         if device::context().is_none() {
             return false;
         }

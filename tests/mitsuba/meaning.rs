@@ -97,8 +97,67 @@ fn a_sphere_is_moved_by_its_centre_before_its_transform() {
          <transform name=\"to_world\"><scale value=\"2\"/></transform></shape>",
     );
     assert_eq!(scene.objects[0].geometry, Geometry::Sphere);
+    // Ours stands around y, Mitsuba's around z.
     let pole = scene.objects[0].transform.0.transform_point3(DVec3::Y);
-    assert!(close(pole, [2.0, 1.0, 0.0]), "{pole}");
+    assert!(close(pole, [2.0, 0.0, 1.0]), "{pole}");
+}
+
+#[test]
+fn a_sphere_has_its_texture_around_z_from_x_towards_y_whichever_way_it_faces() {
+    // Where Mitsuba's (u, v) is, v from the pole at +z.
+    let places = [
+        ([0.25, 0.5], DVec3::Y),
+        ([0.5, 0.5], DVec3::NEG_X),
+        ([0.75, 0.5], DVec3::NEG_Y),
+        ([0.25, 0.25], DVec3::new(0.0, 0.5f64.sqrt(), 0.5f64.sqrt())),
+    ];
+    let scene = read(LEAST);
+    for (uv, place) in places {
+        // Of the analytic sphere: u = 0.5 towards its +z and growing towards +x, v from its pole at -y.
+        let (turn, height) = ((uv[0] - 0.5) * std::f64::consts::TAU, (uv[1] - 0.5) * std::f64::consts::PI);
+        let own = DVec3::new(turn.sin() * height.cos(), -height.sin(), turn.cos() * height.cos());
+        let found = scene.objects[0].transform.0.transform_point3(own);
+        assert!((found - place).length() < 1e-6, "{uv:?}: {found}");
+    }
+    let scene = read(
+        "<sensor type=\"perspective\"/><shape type=\"sphere\"><boolean name=\"flip_normals\" value=\"true\"/></shape>",
+    );
+    let (mesh, transform) = (mesh_of(&scene, &scene.objects[0]), scene.objects[0].transform.0);
+    for (uv, place) in places {
+        let at = |i: &usize| (transform.transform_point3(mesh.positions[*i].as_dvec3()) - place).length() < 1e-5;
+        let vertex = (0..mesh.positions.len()).find(at).expect("a vertex there");
+        let found = mesh.uvs[vertex];
+        assert!((found - Vec2::new(uv[0] as f32, 1.0 - uv[1] as f32)).length() < 1e-5, "{uv:?}: {found}");
+    }
+}
+
+#[test]
+fn every_face_of_a_cube_has_the_corners_of_mitsubas_table() {
+    let scene = read("<sensor type=\"perspective\"/><shape type=\"cube\"/>");
+    let mesh = mesh_of(&scene, &scene.objects[0]);
+    // Corner, normal and Mitsuba's uv: the first of each face in its source, and one across it.
+    for (corner, normal, uv) in [
+        ([1.0, -1.0, -1.0], Vec3::NEG_Y, [0.0, 1.0]),
+        ([1.0, 1.0, -1.0], Vec3::Y, [0.0, 1.0]),
+        ([1.0, -1.0, -1.0], Vec3::X, [0.0, 1.0]),
+        ([1.0, 1.0, 1.0], Vec3::X, [1.0, 0.0]),
+        ([1.0, -1.0, 1.0], Vec3::Z, [0.0, 1.0]),
+        ([-1.0, 1.0, 1.0], Vec3::Z, [1.0, 0.0]),
+        ([-1.0, -1.0, 1.0], Vec3::NEG_X, [0.0, 1.0]),
+        ([1.0, 1.0, -1.0], Vec3::NEG_Z, [0.0, 1.0]),
+    ] {
+        let is = |i: &usize| mesh.positions[*i] == Vec3::from_array(corner) && mesh.normals[*i] == normal;
+        let vertex = (0..mesh.positions.len()).find(is).expect("a corner");
+        assert_eq!(mesh.uvs[vertex], Vec2::new(uv[0], 1.0 - uv[1]), "{corner:?} of {normal}");
+    }
+}
+
+#[test]
+fn merged_shapes_are_shown_each_and_names_of_plugins_may_have_capitals() {
+    let scene = read(
+        "<sensor type=\"perspective\"/><shape type=\"merge\"><shape type=\"Cube\"/><shape type=\"merge\"><shape type=\"sphere\"/></shape></shape>",
+    );
+    assert_eq!((scene.objects.len(), scene.objects[1].geometry), (2, Geometry::Sphere));
 }
 
 #[test]
@@ -348,6 +407,13 @@ fn a_checkerboard_has_its_first_colour_where_u_and_v_are_small() {
     assert_eq!(texture.shear, [0.0, 0.0]);
     let TextureData::Float(texels) = &texture.data else { panic!("{texture:?}") };
     assert_eq!((texels[0][0], texels[1][0], texture.bilinear), (0.4, 0.2, false));
+    // Where it is a number, Mitsuba's other function is asked, which has the colours swapped.
+    let scene = read(
+        "<sensor type=\"perspective\"/><shape type=\"cube\"><bsdf type=\"mask\"><texture type=\"checkerboard\" name=\"opacity\"/>\
+         <bsdf type=\"diffuse\"/></bsdf></shape>",
+    );
+    let TextureData::Float(texels) = &scene.textures[0].data else { panic!("{:?}", scene.textures) };
+    assert_eq!((texels[0][0], texels[1][0]), (0.2, 0.4));
 }
 
 #[test]
@@ -378,6 +444,9 @@ fn depths_count_surfaces_instead_of_edges() {
         "{LEAST}<integrator type=\"moment\"><integrator type=\"path\"><integer name=\"max_depth\" value=\"3\"/></integrator></integrator>"
     ));
     assert_eq!((wrapped.settings.integrator, wrapped.settings.rr_depth), (Integrator::Path, 5));
+    let particles = read(&format!("{LEAST}<integrator type=\"ptracer\"/>"));
+    assert_eq!(particles.settings.integrator, Integrator::Path);
+    assert!(particles.warnings[0].contains("\"ptracer\" is read as \"path\""), "{:?}", particles.warnings);
     let direct = read(&format!("{LEAST}<integrator type=\"direct\"/>")).settings;
     assert_eq!((direct.integrator, direct.max_depth), (Integrator::Direct, 1));
     assert_eq!((wrapped.settings.max_depth, wrapped.warnings.iter().filter(|w| w.contains("moment")).count()), (2, 0));

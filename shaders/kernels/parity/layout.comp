@@ -200,6 +200,16 @@ void store_constants() {
     constants[123] = SHADOWS_FILTERED;
     constants[124] = SLIDE_ENTRIES;
     constants[125] = MATERIAL_BY_SIDE;
+    constants[126] = PARAMETER_ANISOTROPIC;
+    constants[127] = PARAMETER_SPEC_TRANS;
+    constants[128] = PARAMETER_SPEC_TINT;
+    constants[129] = PARAMETER_SHEEN;
+    constants[130] = PARAMETER_SHEEN_TINT;
+    constants[131] = PARAMETER_FLATNESS;
+    constants[132] = PARAMETER_CLEARCOAT;
+    constants[133] = PARAMETER_CLEARCOAT_GLOSS;
+    constants[134] = MAX_SHADE_GROUPS;
+    constants[135] = SHADE_GROUP_MISSED;
 }
 
 void main() {

@@ -22,18 +22,20 @@ float load_table(uint index) {
 #include "shading/material.glsl"
 
 Material material(uint model) {
+    // A principled material keeps shares in some of them.
+    bool share = model == MODEL_PRINCIPLED;
     Material m;
     m.color = vec3(0.75, 0.5, 0.1);
     m.model = model;
     m.specular_color = vec3(1.0, 0.9, 0.8);
-    m.exponent = argument(6u);
+    m.exponent = share ? argument(6u) * 0.0005 : argument(6u);
     m.k_a = 0.5;
     m.k_d = 1.0 - argument(7u);
     m.k_s = argument(7u);
     m.k_r = 0.25;
     m.eta = vec3(argument(8u), argument(8u) * 0.75, argument(8u) * 1.25);
     m.m0 = argument(10u);
-    m.k = vec3(argument(9u), argument(9u) * 0.5, argument(9u) * 0.25);
+    m.k = vec3(argument(9u), argument(9u) * 0.5, argument(9u) * 0.25) * (share ? 0.125 : 1.0);
     m.m1 = argument(11u);
     m.w0 = 0.625;
     m.w1 = 0.375;

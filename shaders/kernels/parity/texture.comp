@@ -104,9 +104,17 @@ void main() {
         m.m0_v = 0.125;
         m.m1_v = 0.375;
         m.extra = 0.75;
+        m.k = vec3(0.5, 0.25, 0.125);
+        m.w0 = 0.75;
+        m.w1 = 0.875;
+        m.k_d = 0.375;
+        m.k_s = 0.625;
+        m.exponent = 1.0;
         Material applied = apply_parameter(m, argument_u(3u), v, argument(4u));
         result4(0u, vec4(applied.color, applied.specular_color.x));
-        result3(4u, vec3(applied.emission.y, applied.m0 + applied.m1_v, applied.k_t + applied.extra));
+        result3(4u, vec3(applied.emission.y, applied.m0 + applied.m1_v,
+                (applied.k_t + applied.extra) + ((applied.k.x + applied.k.y) + applied.k.z)));
+        result(7u, ((applied.w0 + applied.w1) + (applied.k_d + applied.k_s)) + applied.exponent);
         break;
     }
     }

@@ -1,4 +1,5 @@
-//! Pictures as textures: PNG, JPEG, Radiance HDR and WebP through `image`, OpenEXR through `exr`.
+//! Pictures as textures: PNG, JPEG, Radiance HDR, WebP, BMP, PNM and (by the file's name) TGA through `image`, OpenEXR through
+//! `exr`.
 
 use crate::scene::{Location, SceneError, Texture, TextureData};
 use image::{DynamicImage, ImageDecoder, ImageReader};
@@ -34,15 +35,19 @@ pub fn texture_from_bytes(bytes: &[u8], name: &Path, space: ColorSpace) -> Resul
     let bad = |message: String| SceneError::bad(Location::file(name), message);
     let (width, height, data) = match bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
         true => decode_exr(bytes).map_err(bad)?,
-        false => decode(bytes, space).map_err(bad)?,
+        false => decode(bytes, name, space).map_err(bad)?,
     };
     Ok(Texture::new(name.display().to_string(), width, height, data))
 }
 
-fn decode(bytes: &[u8], space: ColorSpace) -> Result<(u32, u32, TextureData), String> {
-    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+fn decode(bytes: &[u8], name: &Path, space: ColorSpace) -> Result<(u32, u32, TextureData), String> {
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+    // Nothing in a TGA file says that it is one.
+    if reader.format().is_none() && name.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("tga")) {
+        reader.set_format(image::ImageFormat::Tga);
+    }
     if reader.format().is_none() {
-        return Err("not a picture in PNG, JPEG, HDR, WebP or EXR format".to_owned());
+        return Err("not a picture in PNG, JPEG, HDR, WebP, BMP, PNM, TGA or EXR format".to_owned());
     }
     let readable = |e: image::ImageError| format!("cannot decode the picture: {e}");
     let mut decoder = reader.into_decoder().map_err(readable)?;

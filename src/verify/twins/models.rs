@@ -61,18 +61,20 @@ fn tables() -> SceneView<'static> {
 }
 
 fn material(i: &In, model: u32) -> Material {
+    // A principled material keeps shares in some of them.
+    let share = model == MODEL_PRINCIPLED;
     Material {
         color: Vec3::new(0.75, 0.5, 0.1),
         model,
         specular_color: Vec3::new(1.0, 0.9, 0.8),
-        exponent: i.f(6),
+        exponent: if share { i.f(6) * 0.0005 } else { i.f(6) },
         k_a: 0.5,
         k_d: 1.0 - i.f(7),
         k_s: i.f(7),
         k_r: 0.25,
         eta: Vec3::new(i.f(8), i.f(8) * 0.75, i.f(8) * 1.25),
         m0: i.f(10),
-        k: Vec3::new(i.f(9), i.f(9) * 0.5, i.f(9) * 0.25),
+        k: Vec3::new(i.f(9), i.f(9) * 0.5, i.f(9) * 0.25) * if share { 0.125 } else { 1.0 },
         m1: i.f(11),
         w0: 0.625,
         w1: 0.375,

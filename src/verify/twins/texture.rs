@@ -138,7 +138,7 @@ pub const FAMILY: Family = Family {
         },
         Twin {
             name: "apply_parameter",
-            domains: &[UNIT, UNIT, UNIT, Below(12), UNIT],
+            domains: &[UNIT, UNIT, UNIT, Below(20), UNIT],
             run: |i, o| {
                 let material = Material {
                     color: Vec3::new(0.75, 0.5, 0.1),
@@ -150,6 +150,12 @@ pub const FAMILY: Family = Family {
                     m0_v: 0.125,
                     m1_v: 0.375,
                     extra: 0.75,
+                    k: Vec3::new(0.5, 0.25, 0.125),
+                    w0: 0.75,
+                    w1: 0.875,
+                    k_d: 0.375,
+                    k_s: 0.625,
+                    exponent: 1.0,
                     ..Material::default()
                 };
                 let applied = apply_parameter(material, i.u(3), i.v3(0), i.f(4));
@@ -157,7 +163,8 @@ pub const FAMILY: Family = Family {
                     .f(applied.specular_color.x)
                     .f(applied.emission.y)
                     .f(applied.m0 + applied.m1_v)
-                    .f(applied.k_t + applied.extra);
+                    .f((applied.k_t + applied.extra) + ((applied.k.x + applied.k.y) + applied.k.z))
+                    .f(((applied.w0 + applied.w1) + (applied.k_d + applied.k_s)) + applied.exponent);
             },
         },
     ],

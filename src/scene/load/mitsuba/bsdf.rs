@@ -1,7 +1,7 @@
 //! `<bsdf>`: materials.
 
 use super::Loader;
-use super::document::{Node, Result};
+use super::document::{Node, Result, hint};
 use super::object::Object;
 use super::spectrum::{METALS, Role};
 use super::texture::Varying;
@@ -35,12 +35,13 @@ impl Loader<'_> {
     }
 
     fn nested_material(&mut self, node: Node, two_sided: bool, nesting: u32) -> Result<MaterialId> {
-        if let Some(id) = self.materials.get(&(node, two_sided)) {
+        let key = (node, two_sided, self.showing);
+        if let Some(id) = self.materials.get(&key) {
             return Ok(*id);
         }
         let material = self.build(node, two_sided, nesting)?;
         let id = self.add_material(material);
-        self.materials.insert((node, two_sided), id);
+        self.materials.insert(key, id);
         Ok(id)
     }
 
@@ -168,7 +169,7 @@ impl Loader<'_> {
     fn principled(&mut self, object: &Object, material: &mut Material) -> Result<()> {
         self.color(object, material, "base_color", 0.5)?;
         object.exclusive("eta", "specular")?;
-        let specular = f64::from(self.constant(object, "specular", 0.5)?);
+        let specular = object.float_in("specular", 0.0, 1.0)?.unwrap_or(0.5);
         let eta = match object.has("eta") {
             true => object.index("eta", "bk7")? as f32,
             // Mitsuba's and Burley's "specular": the reflectance at normal incidence is 0.08 of it.
@@ -176,33 +177,18 @@ impl Loader<'_> {
         };
         material.model = Model::Principled(Principled {
             roughness: self.scalar(object, material, "roughness", 0.5, Parameter::Roughness)?,
-            anisotropic: self.constant(object, "anisotropic", 0.0)?,
+            anisotropic: self.scalar(object, material, "anisotropic", 0.0, Parameter::Anisotropic)?,
             metallic: self.scalar(object, material, "metallic", 0.0, Parameter::Metallic)?,
-            spec_trans: self.constant(object, "spec_trans", 0.0)?,
+            spec_trans: self.scalar(object, material, "spec_trans", 0.0, Parameter::SpecTrans)?,
             eta,
-            spec_tint: self.constant(object, "spec_tint", 0.0)?,
-            sheen: self.constant(object, "sheen", 0.0)?,
-            sheen_tint: self.constant(object, "sheen_tint", 0.0)?,
-            flatness: self.constant(object, "flatness", 0.0)?,
-            clearcoat: self.constant(object, "clearcoat", 0.0)?,
-            clearcoat_gloss: self.constant(object, "clearcoat_gloss", 0.0)?,
+            spec_tint: self.scalar(object, material, "spec_tint", 0.0, Parameter::SpecTint)?,
+            sheen: self.scalar(object, material, "sheen", 0.0, Parameter::Sheen)?,
+            sheen_tint: self.scalar(object, material, "sheen_tint", 0.0, Parameter::SheenTint)?,
+            flatness: self.scalar(object, material, "flatness", 0.0, Parameter::Flatness)?,
+            clearcoat: self.scalar(object, material, "clearcoat", 0.0, Parameter::Clearcoat)?,
+            clearcoat_gloss: self.scalar(object, material, "clearcoat_gloss", 0.0, Parameter::ClearcoatGloss)?,
         });
         Ok(())
-    }
-
-    /// A number within 0 and 1 that is the same all over a surface; of a texture its mean, with a warning.
-    fn constant(&mut self, object: &Object, name: &str, default: f64) -> Result<f32> {
-        let Some(node) = object.property(name).filter(|node| self.document.tag(*node) == "texture") else {
-            return Ok(object.float_in(name, 0.0, 1.0)?.unwrap_or(default) as f32);
-        };
-        let texture = self.texture(node)?;
-        let mean = self.textures.mean(texture, &self.scene).clamp(0.0, 1.0);
-        let location = self.document.location_of(node);
-        let plugin = object.plugin.name;
-        let message =
-            format!("{location}: {name:?} of the bsdf {plugin:?} is the same all over here: {mean:.3}, its mean");
-        self.scene.warnings.push(message);
-        Ok(mean as f32)
     }
 
     /// The base colour: a constant or a texture.
@@ -212,9 +198,10 @@ impl Loader<'_> {
             return Ok(());
         };
         if self.document.tag(node) == "texture"
-            && let Varying::VertexColor(scale) = self.textures.read(self.document, node, &mut self.scene)?
+            && self.showing.is_none()
+            && let Varying::Attribute { scale, .. } = self.textures.read(self.document, node, false, &mut self.scene)?
         {
-            // Vertex colours multiply the colour of every material.
+            // As vertex colours, which multiply the colour of every material.
             material.color = Rgb::splat(scale);
             return Ok(());
         }
@@ -240,10 +227,15 @@ impl Loader<'_> {
         Ok(Rgb::ONE)
     }
 
+    /// A texture of colours, or of the normals or heights of a map.
     pub fn texture(&mut self, node: Node) -> Result<TextureId> {
-        match self.textures.read(self.document, node, &mut self.scene)? {
+        self.texture_of(node, false)
+    }
+
+    fn texture_of(&mut self, node: Node, number: bool) -> Result<TextureId> {
+        match self.textures.read(self.document, node, number, &mut self.scene)? {
             Varying::Texture(texture) => Ok(texture),
-            _ => Err(self.document.bad(node, "vertex colours can only be a colour")),
+            Varying::Attribute { name, scale } => self.attribute_texture(node, &name, scale),
         }
     }
 
@@ -258,7 +250,7 @@ impl Loader<'_> {
     ) -> Result<f32> {
         let Some(node) = object.property(name) else { return Ok(default as f32) };
         if self.document.tag(node) == "texture" {
-            let texture = self.texture(node)?;
+            let texture = self.texture_of(node, true)?;
             let texture = self.textures.grey(texture, &mut self.scene);
             material.textures.push(TextureBinding { parameter, texture, channel: Channel::R, scale: 1.0 });
             return Ok(1.0);
@@ -323,10 +315,15 @@ fn distribution(object: &Object) -> Result<Distribution> {
 fn metal(object: &Object) -> Result<Fresnel> {
     object.exclusive("material", "eta")?;
     object.exclusive("material", "k")?;
-    let names: Vec<(&str, usize)> = METALS.iter().enumerate().map(|(index, (name, ..))| (*name, index)).collect();
-    if let Some(index) = object.choice("material", &names)? {
-        let (_, eta, k) = METALS[index];
-        return Ok(Fresnel::Conductor { eta: Rgb::from_array(eta), k: Rgb::from_array(k) });
+    if let Some(name) = object.text("material")? {
+        let of = |name: &str| METALS.iter().find(|(known, ..)| *known == name);
+        let Some((_, eta, k)) = of(name).or_else(|| of(name.strip_suffix("_palik")?)) else {
+            let names = METALS.iter().map(|(name, ..)| *name);
+            let hint = hint(name, names.clone());
+            let names = names.collect::<Vec<_>>().join(", ");
+            return Err(object.bad("material", format!("\"material\" must be one of {names}, found {name:?}{hint}")));
+        };
+        return Ok(Fresnel::Conductor { eta: Rgb::from_array(*eta), k: Rgb::from_array(*k) });
     }
     let eta = object.color("eta", Role::Index)?.unwrap_or(Rgb::ZERO);
     Ok(Fresnel::Conductor { eta, k: object.color("k", Role::Index)?.unwrap_or(Rgb::ONE) })

@@ -2,7 +2,7 @@
 
 use super::document::{Document, Node, Result, hint};
 use super::object::{Object, number, parse, words};
-use super::spectrum::{INDICES, Role, Spectrum};
+use super::spectrum::{INDICES, Role, Spectrum, equal_energy_white};
 use crate::scene::Rgb;
 
 /// Points of a spectrum: 1 nm steps are a few hundred.
@@ -45,7 +45,8 @@ fn rgb(document: &Document, node: Node) -> Result<Rgb> {
     }
 }
 
-/// A constant, a list of `wavelength:value`, or a file of such lines.
+/// A constant, a list of `wavelength:value`, or a file of such lines. A constant is the same number everywhere but as light,
+/// where it is the colour of a flat spectrum, as in Mitsuba's RGB variants.
 fn spectrum(document: &Document, node: Node, role: Role) -> Result<Rgb> {
     document.check_attributes(node, &["name", "value", "filename", "id"])?;
     if document.attribute(node, "filename").is_some() {
@@ -57,6 +58,7 @@ fn spectrum(document: &Document, node: Node, role: Role) -> Result<Rgb> {
     let text = document.required(node, "value")?;
     if !text.contains(':') {
         return match parse(text) {
+            Some(value) if role == Role::Emission => Ok(equal_energy_white() * value as f32),
             Some(value) => Ok(Rgb::splat(value as f32)),
             None => Err(document.bad_value(
                 node,

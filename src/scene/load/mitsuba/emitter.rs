@@ -7,8 +7,8 @@ use super::spectrum::Role;
 use crate::scene::load::image::ColorSpace;
 use crate::scene::load::texture_files::intern;
 use crate::scene::{
-    Attenuation, Background, Channel, Environment, Flaps, IntensityUnit, Light, LightKind, Material, Parameter, Rgb,
-    Slide, Texture, TextureBinding, Wrap,
+    Attenuation, Background, Channel, Environment, Flaps, IntensityUnit, Light, LightKind, Material, Model, Parameter,
+    Rgb, Slide, Texture, TextureBinding, Transparency, Wrap,
 };
 use glam::{DAffine3, DVec3, Vec3};
 use std::f64::consts::PI;
@@ -43,6 +43,21 @@ impl Loader<'_> {
             None => {}
         }
         Ok(())
+    }
+
+    /// Lets a lamp glow as if it covered everything: in Mitsuba neither a mask nor `null` takes of what a shape emits.
+    pub fn uncover(&mut self, emitter: Node, material: &mut Material) {
+        if material.model == Model::Null || material.opacity == 0.0 {
+            let transparency = Some(Transparency::Filtered { k_t: 1.0, color: Rgb::ONE });
+            let nothing =
+                Material { model: Model::Lambert, color: Rgb::ZERO, transparency, opacity: 1.0, ..material.clone() };
+            *material = nothing;
+        }
+        material.emission *= 1.0 / material.opacity;
+        if material.textures.iter().any(|texture| texture.parameter == Parameter::Opacity) {
+            let location = self.document.location_of(emitter);
+            self.scene.warnings.push(format!("{location}: the holes of a textured mask emit nothing here"));
+        }
     }
 
     /// Adds an emitter that stands in the scene itself.

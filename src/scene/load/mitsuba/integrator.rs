@@ -2,7 +2,7 @@
 
 use super::document::{Document, Node, Result};
 use super::object::Object;
-use crate::scene::{Integrator, Scene};
+use crate::scene::{Integrator, Scene, Shadows};
 
 /// Integrators within integrators.
 const NESTING_MAX: u32 = 4;
@@ -31,6 +31,12 @@ fn read(document: &Document, node: Node, scene: &mut Scene, nesting: u32) -> Res
             }
         }
         kind => {
+            if kind == "ptracer" {
+                let location = document.location_of(node);
+                let message =
+                    "the integrator \"ptracer\" is read as \"path\", whose pictures are the same but for noise";
+                scene.warnings.push(format!("{location}: {message}"));
+            }
             // Mitsuba counts the edges of a path, gonio the surfaces it scatters at: one less. -1 has no end there.
             let edges =
                 if kind == "direct" { Some(2) } else { object.integer("max_depth", -1, i64::from(i32::MAX))? };
@@ -45,6 +51,9 @@ fn read(document: &Document, node: Node, scene: &mut Scene, nesting: u32) -> Res
             {
                 scene.settings.rr_depth = rr_depth.min(i64::from(DEPTH_MAX) + 1) as u32;
             }
+            // Light without a size passes holes under the volumetric path tracers only; other light finds its way by itself.
+            let passes = kind.starts_with("volpath");
+            scene.settings.shadows = if passes { Shadows::Filtered } else { Shadows::Opaque };
             scene.settings.hide_emitters = object.boolean("hide_emitters")?.unwrap_or(false);
             Ok(())
         }

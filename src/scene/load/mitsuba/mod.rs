@@ -4,6 +4,7 @@
 //! them their meaning. What Mitsuba's documentation says, down to its defaults, is what is meant; where gonio cannot do
 //! that, it is an error with a place, or a warning.
 
+mod attribute;
 mod bsdf;
 mod color;
 mod document;
@@ -20,7 +21,7 @@ mod transform;
 mod upgrade;
 
 use super::staging::{bare_scene, lacks_camera};
-use crate::scene::{MaterialId, MeshId, Rgb, Scene, SceneError, Shadows};
+use crate::scene::{MaterialId, MeshId, Rgb, Scene, SceneError};
 use document::{Document, Node, hint};
 use object::CLASSES;
 use std::collections::HashMap;
@@ -41,8 +42,8 @@ struct MeshKey {
     flip: bool,
     /// v counts from the bottom in the file.
     turned: bool,
-    /// Its vertex colours are shown.
-    colored: bool,
+    /// Its attributes are shown.
+    shown: attribute::Shown,
     /// Placed by a transform that mirrors it.
     mirrored: bool,
 }
@@ -52,11 +53,16 @@ struct Loader<'a> {
     document: &'a Document,
     scene: Scene,
     textures: texture::Textures,
-    /// By element, and whether a `twosided` is around it.
-    materials: HashMap<(Node, bool), MaterialId>,
+    /// By element, whether a `twosided` is around it, and the mesh whose attributes it shows.
+    materials: HashMap<(Node, bool, Option<MeshId>), MaterialId>,
     meshes: HashMap<MeshKey, MeshId>,
+    /// Meshes with attributes that materials show as pictures.
+    pictured: HashMap<MeshId, attribute::Pictured>,
+    /// The one of them whose material is being made.
+    showing: Option<MeshId>,
     /// The emitter around the scene.
     environment: Option<Node>,
+    integrator: Option<Node>,
 }
 
 /// Loads the scene in `path`. `defines`: values of its parameters (`-D name=value`).
@@ -68,7 +74,10 @@ pub fn load(path: &Path, defines: &[(String, String)]) -> Result<Scene, SceneErr
         textures: texture::Textures::default(),
         materials: HashMap::new(),
         meshes: HashMap::new(),
+        pictured: HashMap::new(),
+        showing: None,
         environment: None,
+        integrator: None,
     };
     for node in document.children(document.root) {
         loader.read(*node)?;
@@ -94,7 +103,13 @@ impl Loader<'_> {
                 self.scene.warnings.push(format!("{location}: the first sensor is used, this one is not"));
                 Ok(())
             }
-            "integrator" => integrator::read_integrator(self.document, node, &mut self.scene),
+            "integrator" => match self.integrator.replace(node) {
+                None => integrator::read_integrator(self.document, node, &mut self.scene),
+                Some(first) => {
+                    let message = format!("a second integrator; the first is at {}", self.document.location_of(first));
+                    Err(self.document.bad(node, message))
+                }
+            },
             // Others refer to them; what nobody refers to is still checked.
             "bsdf" => self.material(node).map(|_| ()),
             "texture" | "spectrum" | "sampler" | "film" | "rfilter" => {
@@ -113,8 +128,6 @@ impl Loader<'_> {
 
     fn finish(self) -> Result<Scene, SceneError> {
         let mut scene = self.scene;
-        // Masks have holes: their shadows too.
-        scene.settings.shadows = Shadows::Filtered;
         let glows = scene.materials.iter().any(|material| material.emission != Rgb::ZERO);
         if scene.lights.is_empty() && !glows && !scene.background.shines() {
             scene.warnings.push(format!("{}: the scene has no light: the picture will be black", scene.name));

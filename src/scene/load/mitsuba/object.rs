@@ -58,7 +58,8 @@ impl<'a> Object<'a> {
         }
         let name = document.required(node, "type")?;
         let of_class = || PLUGINS.iter().filter(|plugin| plugin.class == class);
-        let Some(plugin) = of_class().find(|plugin| plugin.name == name) else {
+        // Mitsuba up to 3.6 took capitals for small letters.
+        let Some(plugin) = of_class().find(|plugin| plugin.name.eq_ignore_ascii_case(name)) else {
             let names: Vec<&str> = of_class().map(|plugin| plugin.name).collect();
             let message = match names.is_empty() {
                 true => format!("<{class}> is not supported: {}", super::NO_MEDIA),

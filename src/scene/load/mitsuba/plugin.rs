@@ -133,6 +133,8 @@ const JITTER: &[Property] = &[ignored("jitter", Boolean)];
 
 const PATH: &[Property] =
     &[p("max_depth", Integer, "-1"), p("rr_depth", Integer, "5"), p("hide_emitters", Boolean, "false")];
+const PASSES: &[Property] =
+    &[ignored("samples_per_pass", Integer), ignored("block_size", Integer), ignored("timeout", Float)];
 
 const MICROFACETS: &[Property] =
     &[p("distribution", Text, "beckmann"), p("alpha", Scalar, "0.1"), ignored("sample_visible", Boolean)];
@@ -165,6 +167,7 @@ pub const PLUGINS: &[Plugin] = &[
     ),
     plugin("shape", "shapegroup", &[], &["shape"]),
     plugin("shape", "instance", &[TO_WORLD], &["shape"]),
+    plugin("shape", "merge", &[], &["shape"]),
     plugin("bsdf", "diffuse", &[&[p("reflectance", Texture, "0.5")]], &[]),
     plugin("bsdf", "dielectric", &[GLASS, SPECULAR, SPECULAR_TRANSMITTANCE], &[]),
     plugin("bsdf", "thindielectric", &[GLASS, SPECULAR, SPECULAR_TRANSMITTANCE], &[]),
@@ -273,18 +276,22 @@ pub const PLUGINS: &[Plugin] = &[
     plugin("sampler", "multijitter", &[SAMPLER, JITTER], &[]),
     plugin("sampler", "orthogonal", &[SAMPLER, JITTER, &[ignored("strength", Integer)]], &[]),
     plugin("sampler", "ldsampler", &[SAMPLER], &[]),
-    plugin("integrator", "path", &[PATH], &[]),
-    plugin("integrator", "volpath", &[PATH], &[]),
-    plugin("integrator", "volpathmis", &[PATH, &[ignored("use_spectral_mis", Boolean)]], &[]),
+    plugin("integrator", "path", &[PATH, PASSES], &[]),
+    plugin("integrator", "volpath", &[PATH, PASSES], &[]),
+    plugin("integrator", "ptracer", &[PATH, PASSES], &[]),
+    plugin("integrator", "volpathmis", &[PATH, PASSES, &[ignored("use_spectral_mis", Boolean)]], &[]),
     plugin(
         "integrator",
         "direct",
-        &[&[
-            ignored("shading_samples", Integer),
-            ignored("emitter_samples", Integer),
-            ignored("bsdf_samples", Integer),
-            p("hide_emitters", Boolean, "false"),
-        ]],
+        &[
+            &[
+                ignored("shading_samples", Integer),
+                ignored("emitter_samples", Integer),
+                ignored("bsdf_samples", Integer),
+                p("hide_emitters", Boolean, "false"),
+            ],
+            PASSES,
+        ],
         &[],
     ),
     plugin("integrator", "moment", &[], &["integrator"]),

@@ -1,26 +1,38 @@
 //! `<shape>`: meshes from files and named shapes, with their materials and emitters.
 
+use super::attribute::Shown;
 use super::document::{Node, Result};
 use super::object::Object;
 use super::{Loader, MeshKey, serialized};
 use crate::scene::load::{obj, ply};
 use crate::scene::shape::repair_normals;
 use crate::scene::{Geometry, MaterialId, Mesh, MeshId, Transform};
-use glam::{DAffine3, DVec3, Vec2, Vec3};
+use glam::{DAffine3, DMat3, DVec3, Vec2, Vec3};
 use std::f64::consts::TAU;
 
 /// Around a disk or cylinder, which are tessellated.
 const SEGMENTS: u32 = 256;
 /// Objects that instances of groups may make.
 const OBJECTS_MAX: usize = 1 << 22;
+/// Shapes within shapes.
+const NESTING_MAX: u32 = 16;
 
 impl Loader<'_> {
     /// Adds a shape to the scene, or what an instance shows.
     pub fn add_shape(&mut self, node: Node) -> Result<()> {
+        self.add_shapes(node, 0)
+    }
+
+    fn add_shapes(&mut self, node: Node, nesting: u32) -> Result<()> {
         let object = Object::open(self.document, node)?;
         match object.plugin.name {
             // Shown through its instances.
             "shapegroup" => Ok(()),
+            // What Mitsuba puts into one mesh looks the same apart; it can hold itself, so its depth has an end.
+            "merge" if nesting < NESTING_MAX => {
+                object.nested("shape").into_iter().try_for_each(|child| self.add_shapes(child.node, nesting + 1))
+            }
+            "merge" => Err(self.document.bad(node, "more than 16 shapes within each other; does one hold itself?")),
             "instance" => {
                 let Some(child) = object.only("shape")? else {
                     return Err(self.document.bad(node, "an instance refers to a shapegroup"));
@@ -34,8 +46,10 @@ impl Loader<'_> {
                 let place = object.transform("to_world")?;
                 for shape in group.nested("shape") {
                     let shape = Object::open(self.document, shape.node)?;
-                    if matches!(shape.plugin.name, "shapegroup" | "instance") {
-                        return Err(self.document.bad(shape.node, "a shapegroup holds no groups and no instances"));
+                    if matches!(shape.plugin.name, "shapegroup" | "instance" | "merge") {
+                        return Err(self
+                            .document
+                            .bad(shape.node, "a shapegroup holds no groups, no instances and no merged shapes"));
                     }
                     if let Some(emitter) = shape.only("emitter")? {
                         return Err(self.document.bad(emitter.written, "shapes of a shapegroup emit no light"));
@@ -52,8 +66,14 @@ impl Loader<'_> {
         if self.scene.objects.len() >= OBJECTS_MAX {
             return Err(self.document.bad(shape.node, format!("more than {OBJECTS_MAX} objects")));
         }
-        let material = self.shape_material(shape)?;
         let (geometry, own) = self.geometry(shape)?;
+        self.showing = match geometry {
+            Geometry::Mesh(mesh) if self.pictured.contains_key(&mesh) => Some(mesh),
+            _ => None,
+        };
+        let material = self.shape_material(shape);
+        self.showing = None;
+        let material = material?;
         let transform = own.then(shape.transform("to_world")?).then(place);
         let name = self.document.attribute(shape.node, "id").unwrap_or(shape.plugin.name).to_owned();
         self.scene.objects.push(crate::scene::Object {
@@ -83,23 +103,26 @@ impl Loader<'_> {
         };
         let mut material = self.scene.materials[base.0 as usize].clone();
         self.glow(emitter, &mut material)?;
+        self.uncover(emitter.written, &mut material);
         Ok(self.add_material(material))
     }
 
     /// The geometry of a shape and where it lies in the shape's own space.
     fn geometry(&mut self, shape: &Object) -> Result<(Geometry, Transform)> {
         let flip = shape.boolean("flip_normals")?.unwrap_or(false);
+        let shown = self.shown_attributes(shape)?;
         let mut own = DAffine3::IDENTITY;
         let mut mesh = match shape.plugin.name {
             "sphere" => {
                 let radius = shape.float_in("radius", 1e-12, 1e12)?.unwrap_or(1.0);
                 own = DAffine3::from_translation(shape.vector("center")?.unwrap_or(DVec3::ZERO));
-                own.matrix3 *= radius;
+                own.matrix3 = upright() * radius;
                 if !flip {
                     return Ok((Geometry::Sphere, Transform(own)));
                 }
-                // The analytic sphere faces outwards.
-                shape_mesh(crate::scene::shape::sphere_mesh(1.0, SEGMENTS))
+                // The analytic sphere faces outwards. A mesh of ours has u = 0 towards +x.
+                own.matrix3 = DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y) * radius;
+                crate::scene::shape::sphere_mesh(1.0, SEGMENTS)
             }
             "rectangle" => rectangle(),
             "cube" => cube(),
@@ -108,7 +131,7 @@ impl Loader<'_> {
                 own = cylinder_place(shape)?;
                 cylinder()
             }
-            _ => return Ok((Geometry::Mesh(self.file_mesh(shape, flip)?), Transform(own))),
+            _ => return Ok((Geometry::Mesh(self.file_mesh(shape, flip, &shown)?), Transform(own))),
         };
         if flip {
             flip_normals(&mut mesh);
@@ -123,7 +146,7 @@ impl Loader<'_> {
     }
 
     /// The mesh of a shape that names a file; one that is used again is read once.
-    fn file_mesh(&mut self, shape: &Object, flip: bool) -> Result<MeshId> {
+    fn file_mesh(&mut self, shape: &Object, flip: bool, shown: &Shown) -> Result<MeshId> {
         let Some(node) = shape.property("filename") else { return shape.required("filename", None) };
         let path = self.document.find_file(node, "value")?;
         let kind = shape.plugin.name;
@@ -131,26 +154,26 @@ impl Loader<'_> {
         let turned = shape.boolean("flip_tex_coords")?.unwrap_or(kind == "obj");
         let index =
             if kind == "serialized" { shape.integer("shape_index", 0, 1 << 20)?.unwrap_or(0) as u32 } else { 0 };
-        let colored = match shape.only("bsdf")? {
-            Some(bsdf) => self.shows_vertex_colors(bsdf.node, 0)?,
-            None => false,
-        };
         let mirrored = shape.transform("to_world")?.0.matrix3.determinant() < 0.0;
-        let key = MeshKey { file: path.display().to_string(), index, flat, flip, turned, colored, mirrored };
+        let file = path.display().to_string();
+        let key = MeshKey { file, index, flat, flip, turned, shown: shown.clone(), mirrored };
         if let Some(id) = self.meshes.get(&key) {
             return Ok(*id);
         }
-        let mut mesh = match kind {
-            "obj" => obj::read_mesh(&path)?,
-            "ply" => ply::read_mesh(&path)?,
-            _ => serialized::read_mesh(&path, index)?,
+        let (mut mesh, attributes) = match kind {
+            "obj" => (obj::read_mesh(&path)?, Vec::new()),
+            "ply" if *shown != Shown::Nothing => ply::read_mesh_with_attributes(&path)?,
+            "ply" => (ply::read_mesh(&path)?, Vec::new()),
+            _ => {
+                let mut mesh = serialized::read_mesh(&path, index)?;
+                let values = std::mem::take(&mut mesh.colors);
+                let colors = ply::Attribute { name: "vertex_color".to_owned(), on_faces: false, values };
+                (mesh, if colors.values.is_empty() { Vec::new() } else { vec![colors] })
+            }
         };
         // v = 0 is the top row in Mitsuba and the bottom row here.
         if !turned {
             mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
-        }
-        if !colored {
-            mesh.colors.clear();
         }
         // Without vertex normals of its own, Mitsuba takes a face's sides from its corners where they come to lie.
         if mirrored && (flat || mesh.normals.is_empty()) {
@@ -170,20 +193,10 @@ impl Loader<'_> {
         if mesh.name.is_empty() {
             mesh.name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         }
-        Ok(self.add_mesh(key, mesh))
-    }
-
-    /// Whether a material has a `mesh_attribute`: else the colours of a mesh have no meaning.
-    fn shows_vertex_colors(&self, node: Node, nesting: u32) -> Result<bool> {
-        if self.document.tag(node) == "texture" {
-            return Ok(self.document.attribute(node, "type") == Some("mesh_attribute"));
-        }
-        let inner = |child: &Node| {
-            let child = self.document.resolve(*child)?;
-            let deeper = matches!(self.document.tag(child), "bsdf" | "texture") && nesting < super::bsdf::NESTING_MAX;
-            Ok(deeper && self.shows_vertex_colors(child, nesting + 1)?)
-        };
-        self.document.children(node).iter().try_fold(false, |found, child| Ok(found || inner(child)?))
+        let pictured = self.show_attributes(shape, shown, &mut mesh, attributes)?;
+        let id = self.add_mesh(key, mesh);
+        self.pictured.extend(pictured.map(|pictured| (id, pictured)));
+        Ok(id)
     }
 
     fn add_mesh(&mut self, key: MeshKey, mesh: Mesh) -> MeshId {
@@ -237,26 +250,28 @@ fn flip_normals(mesh: &mut Mesh) {
     mesh.normals.iter_mut().for_each(|normal| *normal = -*normal);
 }
 
-/// Adds a quad with corners counter-clockwise; uvs as Mitsuba has them are (0, 0), (1, 0), (1, 1), (0, 1).
-fn add_quad(mesh: &mut Mesh, corners: [[f32; 3]; 4]) {
+/// Adds a quad with corners counter-clockwise; the first has u = 0 and, with u growing to the second, the v of `first`, 0 or 1.
+fn add_quad(mesh: &mut Mesh, corners: [[f32; 3]; 4], first: f32) {
     let base = mesh.positions.len() as u32;
     let [a, b, c, d] = corners.map(Vec3::from_array);
     let normal = (b - a).cross(d - a).normalize();
     mesh.positions.extend([a, b, c, d]);
     mesh.normals.extend([normal; 4]);
-    mesh.uvs.extend([Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(1.0, 0.0), Vec2::new(0.0, 0.0)]);
+    let last = 1.0 - first;
+    mesh.uvs.extend([Vec2::new(0.0, first), Vec2::new(1.0, first), Vec2::new(1.0, last), Vec2::new(0.0, last)]);
     mesh.triangles.extend([[base, base + 1, base + 2], [base, base + 2, base + 3]]);
 }
 
 /// -1 to 1 in x and y, facing +z.
 fn rectangle() -> Mesh {
     let mut mesh = Mesh { name: "rectangle".to_owned(), ..Mesh::default() };
-    add_quad(&mut mesh, [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]);
+    // Mitsuba's v is 0 where y is -1.
+    add_quad(&mut mesh, [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]], 1.0);
     mesh
 }
 
-/// -1 to 1 along each axis, every face with the whole uv square. The corner of uv (0, 0) and the way of u are those of
-/// Mitsuba's own table.
+/// -1 to 1 along each axis, every face with the whole uv square: corners and their uvs are those of Mitsuba 3.9's own table,
+/// where the first of each face has (0, 1).
 fn cube() -> Mesh {
     let mut mesh = Mesh { name: "cube".to_owned(), ..Mesh::default() };
     let faces = [
@@ -268,7 +283,7 @@ fn cube() -> Mesh {
         [[1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, -1.0], [-1.0, 1.0, -1.0]],
     ];
     for face in faces {
-        add_quad(&mut mesh, face);
+        add_quad(&mut mesh, face, 0.0);
     }
     mesh
 }
@@ -318,14 +333,11 @@ fn cylinder_place(shape: &Object) -> Result<DAffine3> {
     let side = if forward.x.abs() < 0.9 { DVec3::X } else { DVec3::Y };
     let x = side - forward * side.dot(forward);
     let x = x / libm::sqrt(x.dot(x));
-    let matrix3 = glam::DMat3::from_cols(x * radius, forward.cross(x) * radius, axis);
+    let matrix3 = DMat3::from_cols(x * radius, forward.cross(x) * radius, axis);
     Ok(DAffine3 { matrix3, translation: p0 })
 }
 
-/// A mesh of ours, which stands around y, turned to stand around z.
-fn shape_mesh(mut mesh: Mesh) -> Mesh {
-    let turn = |v: &mut Vec3| *v = Vec3::new(v.z, v.x, v.y);
-    mesh.positions.iter_mut().for_each(turn);
-    mesh.normals.iter_mut().for_each(turn);
-    mesh
+/// Turns a sphere of ours, around y with u = 0.5 towards +z, to stand as Mitsuba's: around z with u = 0 towards +x.
+fn upright() -> DMat3 {
+    DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::NEG_X)
 }

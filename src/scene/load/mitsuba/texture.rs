@@ -12,11 +12,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// What varies over a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Varying {
     Texture(TextureId),
-    /// The vertex colours of the mesh.
-    VertexColor(f32),
+    /// What the mesh brings along.
+    Attribute {
+        name: String,
+        scale: f32,
+    },
 }
 
 /// Reads textures into a scene; equal ones once.
@@ -26,21 +29,16 @@ pub struct Textures {
 }
 
 impl Textures {
-    /// The texture in `node`.
-    pub fn read(&mut self, document: &Document, node: Node, scene: &mut Scene) -> Result<Varying> {
+    /// The texture in `node`. `number`: it stands for one, not for a colour.
+    pub fn read(&mut self, document: &Document, node: Node, number: bool, scene: &mut Scene) -> Result<Varying> {
         let object = Object::open(document, node)?;
         let texture = match object.plugin.name {
             "bitmap" => self.bitmap(&object)?,
-            "checkerboard" => checkerboard(&object)?,
+            "checkerboard" => checkerboard(&object, number)?,
             // mesh_attribute
             _ => {
-                let name = object.text("name")?.unwrap_or("vertex_color");
-                if name != "vertex_color" {
-                    return Err(
-                        object.bad("name", format!("only the attribute \"vertex_color\" is read, found {name:?}"))
-                    );
-                }
-                return Ok(Varying::VertexColor(object.float_in("scale", 0.0, 1e6)?.unwrap_or(1.0) as f32));
+                let scale = object.float_in("scale", 0.0, 1e6)?.unwrap_or(1.0) as f32;
+                return Ok(Varying::Attribute { name: super::attribute::name_of(&object)?, scale });
             }
         };
         Ok(Varying::Texture(intern(&mut scene.textures, texture)))
@@ -67,12 +65,6 @@ impl Textures {
         let spread = luminances(&texture.data).into_iter().map(|v| [v, v, v, 1.0]).collect();
         let grey = Texture { data: TextureData::Float(Arc::new(spread)), ..texture.clone() };
         intern(&mut scene.textures, grey)
-    }
-
-    /// The mean luminance of a texture.
-    pub fn mean(&self, id: TextureId, scene: &Scene) -> f64 {
-        let values = luminances(&scene.textures[id.0 as usize].data);
-        values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len().max(1) as f64
     }
 
     fn bitmap(&mut self, object: &Object) -> Result<Texture> {
@@ -108,13 +100,15 @@ fn luminances(data: &TextureData) -> Vec<f32> {
     }
 }
 
-/// Two by two texels: `color0` where u and v lie in the same half of their tile.
-fn checkerboard(object: &Object) -> Result<Texture> {
+/// Two by two texels: `color0` where u and v lie in the same half of their tile. As a number it is the other way round in
+/// Mitsuba 3.9, whose `eval` and `eval_1` differ.
+fn checkerboard(object: &Object, number: bool) -> Result<Texture> {
     let color = |name: &str, default: f32| {
         let color = object.color(name, Role::Reflectance)?.unwrap_or(glam::Vec3::splat(default));
         Ok([color.x, color.y, color.z, 1.0])
     };
     let (a, b) = (color("color0", 0.4)?, color("color1", 0.2)?);
+    let (a, b) = if number { (b, a) } else { (a, b) };
     let mut texture = Texture::new("checkerboard", 2, 2, TextureData::Float(Arc::new(vec![a, b, b, a])));
     texture.bilinear = false;
     place(&mut texture, object)?;

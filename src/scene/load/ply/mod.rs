@@ -3,12 +3,14 @@
 //! Read are positions, normals, colours and texture coordinates of the element `vertex`, the index lists of `face` and
 //! `tristrips`; everything else is skipped. Colours count as sRGB-encoded if integer and as linear if floating.
 
+mod attribute;
 mod header;
 mod numbers;
 
 use super::image::srgb_to_linear;
 use super::{polygon, staging};
 use crate::scene::{Geometry, Location, Material, MaterialId, Mesh, MeshId, Object, Scene, SceneError, Transform};
+pub use attribute::Attribute;
 use glam::{Vec2, Vec3};
 use header::{Element, Header};
 use numbers::{Reader, Values};
@@ -46,13 +48,27 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
 
 /// Reads the mesh in the file `path`, without normals if it has none.
 pub fn read_mesh(path: &Path) -> Result<Mesh, SceneError> {
-    let bytes = std::fs::read(path).map_err(|source| SceneError::Io { location: Location::file(path), source })?;
-    mesh_from_bytes(&bytes, path)
+    mesh_from_bytes(&read_bytes(path)?, path)
+}
+
+/// Reads the mesh in the file `path` with the attributes of its vertices and triangles.
+pub fn read_mesh_with_attributes(path: &Path) -> Result<(Mesh, Vec<Attribute>), SceneError> {
+    let mut attributes = Vec::new();
+    let mesh = read(&read_bytes(path)?, path, Some(&mut attributes))?;
+    Ok((mesh, attributes))
+}
+
+fn read_bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
+    std::fs::read(path).map_err(|source| SceneError::Io { location: Location::file(path), source })
 }
 
 /// Reads a mesh from the bytes of a PLY file; `name` is that file, for messages.
 pub fn mesh_from_bytes(bytes: &[u8], name: &Path) -> Result<Mesh, SceneError> {
-    let mut mesh = parse(bytes).map_err(|(place, message)| {
+    read(bytes, name, None)
+}
+
+fn read(bytes: &[u8], name: &Path, attributes: Option<&mut Vec<Attribute>>) -> Result<Mesh, SceneError> {
+    let mut mesh = parse(bytes, attributes).map_err(|(place, message)| {
         let mut location = Location::file(name);
         match place {
             Place::Line(line) => {
@@ -69,20 +85,33 @@ pub fn mesh_from_bytes(bytes: &[u8], name: &Path) -> Result<Mesh, SceneError> {
 
 type Failure = (Place, String);
 
-fn parse(bytes: &[u8]) -> Result<Mesh, Failure> {
+/// `attributes`: where those of vertices and faces are put, if they are wanted.
+fn parse(bytes: &[u8], mut attributes: Option<&mut Vec<Attribute>>) -> Result<Mesh, Failure> {
     let header = header::parse(bytes)?;
     let end_of_header = Place::Line(header.lines);
     let mut reader = Reader::new(bytes, &header);
     let mut mesh = Mesh::default();
     for element in &header.elements {
         check_count(element, &header, &reader)?;
+        let mut further = match attributes {
+            Some(_) if matches!(element.name.as_str(), "vertex" | "face") => attribute::Columns::find(element),
+            _ => Vec::new(),
+        };
         match element.name.as_str() {
             "vertex" if mesh.positions.is_empty() => {
                 let columns = Columns::find(element).map_err(|message| (end_of_header, message))?;
-                each(&mut reader, element, |values| columns.push(values, &mut mesh))?;
+                each(&mut reader, element, |values| {
+                    further.iter_mut().for_each(|further| further.push(values, 1));
+                    columns.push(values, &mut mesh)
+                })?;
             }
             "face" => match element.find_list(&["vertex_indices", "vertex_index"]) {
-                Some(list) => each(&mut reader, element, |values| push_face(values.list(list), &mut mesh))?,
+                Some(list) => each(&mut reader, element, |values| {
+                    let before = mesh.triangles.len();
+                    push_face(values.list(list), &mut mesh)?;
+                    further.iter_mut().for_each(|further| further.push(values, mesh.triangles.len() - before));
+                    Ok(())
+                })?,
                 None => {
                     return Err((end_of_header, "element face has no list vertex_indices".to_owned()));
                 }
@@ -92,6 +121,9 @@ fn parse(bytes: &[u8]) -> Result<Mesh, Failure> {
                 None => each(&mut reader, element, |_| Ok(()))?,
             },
             _ => each(&mut reader, element, |_| Ok(()))?,
+        }
+        if let Some(attributes) = attributes.as_deref_mut() {
+            attributes.extend(further.into_iter().map(|further| further.attribute));
         }
     }
     if mesh.triangles.is_empty() {

@@ -24,6 +24,14 @@ const KEYS: &[(&str, Parameter)] = &[
     ("weight_texture", Parameter::Weight),
     ("normal_map", Parameter::Normal),
     ("bump_map", Parameter::Bump),
+    ("anisotropic_texture", Parameter::Anisotropic),
+    ("spec_trans_texture", Parameter::SpecTrans),
+    ("spec_tint_texture", Parameter::SpecTint),
+    ("sheen_texture", Parameter::Sheen),
+    ("sheen_tint_texture", Parameter::SheenTint),
+    ("flatness_texture", Parameter::Flatness),
+    ("clearcoat_texture", Parameter::Clearcoat),
+    ("clearcoat_gloss_texture", Parameter::ClearcoatGloss),
 ];
 
 /// The textures read so far; equal ones are kept once.
