@@ -272,6 +272,7 @@ pub fn widen(top: &Part, parts: &[Part], watch: &Watch) -> Result<(Vec<Node>, Ve
     let whole = Whole { top, parts };
     let root = whole.resolve(Place { part: TOP, node: 0 });
     let (mut first, later) = whole.write(root, |place| place.part != TOP);
+    (watch.advance)(first.order.len() as u64);
     let write = |&(place, _): &(Place, u32)| {
         watch.check()?;
         let (mut part, _) = whole.write(place, |_| false);
