@@ -76,7 +76,7 @@ fn bench(folder: &Path, runs: usize, warmup: usize) -> io::Result<()> {
     let ids: Vec<[u32; 3]> = read(&folder.join("triangles.u32"))?;
     let start = Instant::now();
     let closest = Tracer::build(&corners, &ids, false);
-    eprintln!("{name}: obvhs: build {:.2} s", start.elapsed().as_secs_f64());
+    eprintln!("{name}: obvhs: build {:.4} s", start.elapsed().as_secs_f64());
     let all_cast = ids.iter().all(|id| id[2] != 0);
     let casting = (!all_cast).then(|| Tracer::build(&corners, &ids, true));
     for (kind, any) in KINDS {

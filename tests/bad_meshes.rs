@@ -1,18 +1,12 @@
 //! Broken models: each is an error that names its file and the place within it, or is accepted for a stated reason.
 
+#[path = "common/assets.rs"]
+mod assets;
+
+use assets::asset;
 use gonio::scene::load::image::{ColorSpace, texture_from_bytes};
 use gonio::scene::load::{gltf, ply};
 use std::path::{Path, PathBuf};
-
-fn asset(name: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("GONIO_ASSETS").map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
-    let path = root.join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    println!("SKIPPED: no {name} in the assets");
-    None
-}
 
 fn files_with(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
     let mut found = Vec::new();

@@ -1,9 +1,13 @@
 //! Malformed scenes: each ends with an error that says where and what, none with a panic.
 
+#[path = "common/assets.rs"]
+mod assets;
+
+use assets::asset;
 use gonio::scene::load::load;
 use gonio::scene::{Scene, SceneError};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Writes `text` as `name` and loads it. The temporary folder is cut from the message.
 fn attempt(name: &str, text: &[u8]) -> Result<Scene, String> {
@@ -436,12 +440,7 @@ fn malformed_mtl_files_are_refused_at_their_place() {
 
 #[test]
 fn the_collected_malformed_obj_files_are_refused() {
-    let assets = std::env::var_os("GONIO_ASSETS").map_or(PathBuf::from("../shared/assets"), PathBuf::from);
-    let folder = assets.join("negative/obj-ply");
-    if !folder.is_dir() {
-        eprintln!("SKIPPED: no {}", folder.display());
-        return;
-    }
+    let Some(folder) = asset("negative/obj-ply") else { return };
     for (name, expected) in [
         ("empty.obj", "empty.obj: the file has no triangles"),
         ("malformed.obj", "malformed.obj:23:5: there is no vertex 12: the file has 8 so far"),

@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use glam::{DAffine3, DVec3, Vec3};
-use gonio::bake::{BakeError, SceneData, bake};
+use gonio::bake::{BakeError, SceneData, Watch, bake, bake_watched};
 use gonio::layout::*;
 use gonio::scene::*;
 // Not the records of the same names.
@@ -125,6 +125,63 @@ fn every_child_box_contains_what_lies_below() {
     check_scene(&bake(&scene).expect("bakes"));
 }
 
+/// More triangles than one part of a hierarchy holds, small, large and in clusters.
+fn crowd() -> Mesh {
+    let mut random = Random::new(7);
+    let mut crowd = soup(&mut random, 70_000, 0.01);
+    for other in [soup(&mut random, 300, 3.0), globe(80)] {
+        let base = crowd.positions.len() as u32;
+        crowd.positions.extend(&other.positions);
+        crowd.triangles.extend(other.triangles.iter().map(|corners| corners.map(|corner| base + corner)));
+    }
+    crowd.normals.clear();
+    crowd
+}
+
+#[test]
+fn a_mesh_of_several_parts_loses_nothing() {
+    let data = bake(&scene_of(vec![crowd()])).expect("bakes");
+    assert!(data.triangles.len() > 1 << 16, "{}", data.triangles.len());
+    let mut found: Vec<u32> = data.triangles.iter().map(|triangle| triangle.primitive).collect();
+    found.sort_unstable();
+    found.dedup();
+    assert_eq!(found.len(), data.triangles.len());
+    check_scene(&data);
+}
+
+#[test]
+fn any_number_of_threads_bakes_the_same_arrays() {
+    let scene = scene_of(vec![crowd(), globe(20)]);
+    let baked = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| bake(&scene).expect("bakes"))
+    };
+    let one = baked(1);
+    for threads in [2, 5] {
+        let other = baked(threads);
+        assert!(one.nodes == other.nodes && one.triangles == other.triangles, "{threads} threads");
+        assert!(one.faces == other.faces && one.vertices == other.vertices, "{threads} threads");
+        assert_eq!((one.stack_depth, one.digest()), (other.stack_depth, other.digest()));
+    }
+}
+
+#[test]
+fn a_bake_that_is_to_stop_stops_and_one_that_is_watched_tells_of_every_triangle_twice() {
+    use std::sync::atomic::{AtomicU64, Ordering};
+    let scene = scene_of(vec![crowd()]);
+    let told = AtomicU64::new(0);
+    let advance = |count| {
+        told.fetch_add(count, Ordering::Relaxed);
+    };
+    let data = bake_watched(&scene, &Watch { abort: &|| false, advance: &advance }).expect("bakes");
+    // And of its one instance.
+    assert_eq!(told.swap(0, Ordering::Relaxed), 2 * (data.triangles.len() as u64 + 1));
+    let abort = || told.load(Ordering::Relaxed) > 20_000;
+    let stopped = bake_watched(&scene, &Watch { abort: &abort, advance: &advance });
+    assert!(matches!(stopped, Err(BakeError::Aborted)), "{stopped:?}");
+    assert!(told.into_inner() < data.triangles.len() as u64);
+}
+
 #[test]
 fn no_ray_needs_more_stack_than_baking_says() {
     let mut random = Random::new(2);
@@ -173,7 +230,7 @@ fn what_cannot_be_hit_is_dropped_with_one_warning_and_keeps_its_number() {
     ];
     mesh.triangles = vec![[0, 1, 3], [0, 1, 5], [4, 1, 2], [1, 1, 2], [0, 1, 2]];
     let data = bake(&scene_of(vec![mesh])).expect("bakes");
-    let warning = "mesh \"bad\": dropped 2 triangles with coordinates that are not finite and 2 without area";
+    let warning = "mesh \"bad\": dropped triangles: 2 with coordinates that are not finite and 2 without area";
     assert_eq!(data.warnings, [warning]);
     assert_eq!((data.triangles.len(), data.faces.len()), (1, 5));
     let hit = trace_closest(&data.view(), &ray(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z));

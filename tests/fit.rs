@@ -153,6 +153,27 @@ fn a_table_s_fits_are_printed_as_materials_that_a_scene_takes() {
 }
 
 #[test]
+fn the_balls_beside_the_measured_one_are_what_is_fitted_to_its_table() {
+    let scene = load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/lecture/09-measured.toml"), &[]).unwrap();
+    let fitting = fit(&Shelf::of(&scene).unwrap(), 0, &ALL).unwrap();
+    for (fit, material) in fitting.fits.iter().zip(&scene.materials[1..3]) {
+        // As printed, five digits.
+        let near = |a: f32, b: f32| (a - b).abs() < 2e-4 * b.abs().max(0.01);
+        let made = fit.material(&material.name);
+        let shapes = match (&material.model, &made.model) {
+            (Model::Ward { alpha_u: a, alpha_v: b, .. }, Model::Ward { alpha_u, alpha_v, .. }) => {
+                near(*a, *alpha_u) && near(*b, *alpha_v)
+            }
+            (Model::Phong { exponent: a, .. }, Model::Phong { exponent, .. }) => near(*a, *exponent),
+            _ => false,
+        };
+        let weights = near(material.k_d * material.color.x, made.k_d * made.color.x)
+            && near(material.k_s * material.specular_color.x, made.k_s * made.specular_color.x);
+        assert!(shapes && weights, "{:?}: {made:?}", material.name);
+    }
+}
+
+#[test]
 fn the_json_of_a_fit_has_its_numbers_and_leaves_standard_output_to_a_picture() {
     let folder = tempfile::tempdir().unwrap();
     let table = brushed_table(folder.path());

@@ -6,12 +6,15 @@
 mod common;
 #[path = "common/scenes.rs"]
 mod scenes;
+#[path = "common/statistics.rs"]
+mod statistics;
 
 use common::{empty_scene, globe, object};
 use glam::Vec3;
 use gonio::bake::bake;
 use gonio::scene::*;
 use scenes::render_cpu;
+use statistics::Mean;
 use std::sync::Arc;
 
 const SAMPLES: u32 = 16;
@@ -21,10 +24,8 @@ fn mean(scene: &Scene) -> (f64, f64) {
     let pixels = render_cpu(scene, &bake(scene).expect("bakes")).resolve().pixels;
     let values: Vec<f64> =
         pixels.iter().map(|pixel| f64::from(pixel[..3].iter().copied().fold(0.0, f32::max))).collect();
-    let count = values.len() as f64;
-    let value = values.iter().sum::<f64>() / count;
-    let variance = values.iter().map(|v| (v - value) * (v - value)).sum::<f64>() / (count - 1.0);
-    (value, (variance / count).sqrt())
+    let Mean { value, error } = Mean::of(&values);
+    (value, error)
 }
 
 fn white(model: Model) -> Material {

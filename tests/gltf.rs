@@ -1,22 +1,15 @@
 //! glTF: what of it becomes what of ours.
 
+#[path = "common/assets.rs"]
+mod assets;
+
+use assets::asset;
 use glam::{DVec3, Vec2, Vec3};
 use gonio::scene::load::{gltf, load};
 use gonio::scene::{
     Channel, Geometry, Material, Model, Parameter, Scene, SceneError, TextureBinding, TextureData, Transparency, Wrap,
 };
 use std::path::{Path, PathBuf};
-
-/// A file or folder of the assets; None, with a line saying so, where they are not installed.
-fn asset(name: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("GONIO_ASSETS").map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
-    let path = root.join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    println!("SKIPPED: no {name} in the assets");
-    None
-}
 
 /// Positions finite, indices valid, arrays of equal length, normals unit.
 fn check_scene(scene: &Scene) {
@@ -353,6 +346,22 @@ fn gltf_alpha_of_a_texture_blends_only_where_there_is_some() {
     assert_eq!(scene.materials[0].transparency, Some(Transparency::Interpolated { k_t: 0.5 }));
     let masked = r#"{"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.4]}}"#;
     assert_eq!(textured_gltf(masked, &[]).materials[0].opacity, 0.0);
+}
+
+#[test]
+fn gltf_transmission_of_a_texture_counts_by_its_mean() {
+    let thin = |factor: f32| {
+        let material = format!(
+            r#"{{"pbrMetallicRoughness": {{"metallicFactor": 0}}, "extensions": {{"KHR_materials_transmission":
+            {{"transmissionFactor": {factor}, "transmissionTexture": {{"index": 0}}}}}}}}"#
+        );
+        textured_gltf(&material, &[[51, 255, 255, 255]])
+    };
+    let scene = thin(0.5);
+    let Some(Transparency::Filtered { k_t, .. }) = scene.materials[0].transparency else { panic!("{scene:?}") };
+    assert!((k_t - 0.1).abs() < 1e-6, "a fifth of a half: {k_t}");
+    assert_eq!(scene.warnings, ["transmission textures count by their mean"]);
+    assert_eq!(thin(0.0).materials[0].transparency, None);
 }
 
 #[test]

@@ -9,7 +9,7 @@ mod scenes;
 use glam::Vec3;
 use gonio::bake::bake;
 use gonio::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
-use gonio::scene::load::load;
+use gonio::scene::load::{Panels, load};
 use gonio::scene::{Projection, Scene};
 use std::path::Path;
 
@@ -116,5 +116,18 @@ fn a_normal_map_leans_with_its_coordinates_on_a_mirrored_instance() {
         let expected = (leaning * 0.8 + 2.0 * 0.6) / root;
         let got = seen[16 * 64 + column][1];
         assert!((got - expected).abs() < 1e-5, "column {column}: {got} for {expected}");
+    }
+}
+
+#[test]
+fn every_map_and_every_source_is_the_same_on_the_device() {
+    let lecture = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/lecture");
+    // All balls at once, with a map each; an image, wrapped; mip levels; layers by their weights.
+    for (name, panel) in [("27-maps", None), ("27-sources", Some(3)), ("27-horizon", None), ("19-layers", Some(2))] {
+        let panels = Panels::open(&lecture.join(name).with_extension("toml"), &[], &[]);
+        let scene = panels.and_then(|panels| panels.scene(panel));
+        let mut scene = scene.unwrap_or_else(|error| panic!("{error}"));
+        (scene.film.width, scene.film.height, scene.settings.samples) = (72, 48, 4);
+        picture(&scene, &[FetchChoice::Texel]);
     }
 }

@@ -7,9 +7,11 @@ mod scenes;
 
 use glam::DVec3;
 use gonio::bake::bake;
-use gonio::layout::MATERIAL_D_1982;
+use gonio::layout::{DISTRIBUTION_PHONG, DISTRIBUTION_SHIFT, MATERIAL_ANISOTROPIC, MATERIAL_D_1982, MATERIAL_SCHLICK};
 use gonio::render::vulkan::{VulkanOptions, VulkanRenderer};
+use gonio::scene::Fresnel;
 use gonio::scene::load::load;
+use gonio::scene::load::toml::METALS;
 use gonio::verify::inputs::ARGUMENTS;
 use gonio::verify::twins::{Family, RESULTS, evaluate, evaluate_on, models, shading};
 use std::f64::consts::{FRAC_1_PI, PI};
@@ -95,8 +97,8 @@ fn fresnel_reflectances_are_the_printed_ones() {
         ("Ag", [0.971, 0.960, 0.913]),
         ("Al", [0.913, 0.922, 0.922]),
     ] {
-        let metal = gonio::scene::load::toml::METALS.iter().find(|(name, _)| *name == symbol).expect("a metal").1;
-        let gonio::scene::Fresnel::Conductor { eta, k } = metal.fresnel() else { panic!("{symbol}") };
+        let metal = METALS.iter().find(|(name, _)| *name == symbol).expect("a metal").1;
+        let Fresnel::Conductor { eta, k } = metal.fresnel() else { panic!("{symbol}") };
         let arguments = [1.0f32].into_iter().chain(eta.to_array()).chain(k.to_array()).map(f64::from);
         conductor.push((arguments.collect(), expected.to_vec(), 1e-4));
     }
@@ -116,6 +118,48 @@ fn beckmann_s_distribution_has_the_printed_values() {
         cases.push((vec![cos(degrees), m], vec![expected], 1e-5 * expected));
     }
     Sides::new().assert_near("beckmann_d", &cases);
+}
+
+#[test]
+fn a_white_metal_of_other_facets_has_their_printed_and_their_own_values() {
+    let metal = |v: DVec3, l: DVec3, flags: u32, along: f64, across: f64| {
+        let mut words =
+            [v.x, v.y, v.z, l.x, l.y, l.z, 0.0, 1.0, 1.0, 0.0, along, 0.0].map(|x| (x as f32).to_bits()).to_vec();
+        words.extend([MATERIAL_SCHLICK | flags, (across as f32).to_bits()]);
+        words
+    };
+    // Beckmann's slopes .1 and .3, lit and seen along the normal: D(0) G F / 4 = D(0) / 4.
+    let mut sets = vec![metal(DVec3::Z, DVec3::Z, MATERIAL_ANISOTROPIC, 0.1, 0.3)];
+    // Phong's cos^2, alpha^2 = 1/2, each direction masked by Smith's 1 / (1 + Lambda). Of slopes like these Lambda is
+    // C (tan sin^3 / 3 - S), S the integral of sin^3 up to theta, and C = 3/4.
+    let angles = [(70.0, 50.0), (40.0, 85.0), (20.0, 20.0)];
+    let alpha = libm::sqrt(0.5);
+    for (view, light) in angles {
+        sets.push(metal(polar(view, 0.0), polar(light, 170.0), DISTRIBUTION_PHONG << DISTRIBUTION_SHIFT, alpha, alpha));
+    }
+    let results = Sides::new().words(&models::FAMILY, "eval_rough_conductor pdf_rough_conductor", &sets);
+    let masked = |w: DVec3| {
+        let sin = w.truncate().length();
+        1.0 / (1.0 + 0.75 * (sin.powi(4) / (3.0 * w.z) - (2.0 / 3.0 - w.z + w.z.powi(3) / 3.0)))
+    };
+    let mut expected = vec![(10.6103 / 4.0, 2e-5)];
+    for (view, light) in angles {
+        let (v, l) = (polar(view, 0.0), polar(light, 170.0));
+        let d = 4.0 / (2.0 * PI) * (l + v).normalize().z.powi(2);
+        // Lambda is a fit within 1 % for each direction.
+        expected.push((d * masked(v) * masked(l) / (4.0 * v.z), 0.02));
+    }
+    for (sides, (expected, bound)) in results.iter().zip(expected) {
+        for (side, got) in sides.iter().enumerate() {
+            let got = f64::from(got[0]);
+            assert!((got - expected).abs() < bound * expected, "side {side}: {got} for {expected}");
+        }
+        assert!(
+            sides
+                .iter()
+                .all(|side| side[..5].iter().map(|x| x.to_bits()).eq(sides[0][..5].iter().map(|x| x.to_bits())))
+        );
+    }
 }
 
 /// min(1, 2(N.H)(N.V)/(V.H), 2(N.H)(N.L)/(V.H)) (row 16).
@@ -226,6 +270,114 @@ fn middle(text: &str) -> Vec<[f64; 3]> {
     let pixel = scene.film.width * scene.film.height / 2 + scene.film.width / 2;
     let seen = |film: &gonio::film::Film| film.resolve().pixels[pixel as usize];
     films.iter().map(seen).map(|pixel| [pixel[0], pixel[1], pixel[2]].map(f64::from)).collect()
+}
+
+/// Unpolarised reflectance of a metal, in double precision.
+fn conductor(c: f64, eta: f64, k: f64) -> f64 {
+    let s2 = 1.0 - c * c;
+    let a0 = eta * eta - k * k - s2;
+    let ab = libm::sqrt(a0 * a0 + 4.0 * eta * eta * k * k);
+    let a = libm::sqrt(0.5 * (ab + a0));
+    let r_s = (ab + c * c - 2.0 * a * c) / (ab + c * c + 2.0 * a * c);
+    let (t3, t4) = (c * c * ab + s2 * s2, 2.0 * a * c * s2);
+    0.5 * (r_s + r_s * (t3 - t4) / (t3 + t4))
+}
+
+#[test]
+fn the_vases_of_1982_have_the_radiance_of_their_formula() {
+    // Copper: s = 1, d = 0, m = .4 (w .4) and .2 (w .6). Plastic: s = .1, d = .9, m = .15. Two lights of one radiance and solid
+    // angles of 1e-4 and 2e-4: here 10,000 W / (m^2 sr).
+    let copper = "metal = \"Cu\"\nlobes = [{ m = 0.4, weight = 0.4 }, { m = 0.2, weight = 0.6 }]\n";
+    let plastic = "color = [0.65, 0.06, 0.05]\neta = 1.5\nm = 0.15\nk_s = 0.1\n";
+    let Fresnel::Conductor { eta, k } = METALS[0].1.fresnel() else { panic!("{METALS:?}") };
+    let v = polar(35.0, 0.0);
+    for mirrored in [30.0, 50.0] {
+        let lights = [(polar(mirrored, 180.0), 1e-4), (polar(55.0, 160.0), 2e-4)];
+        for (keys, lobes, s, o_d) in [
+            (copper, vec![(0.4, 0.4), (0.2, 0.6)], 1.0, [0.0; 3]),
+            (plastic, vec![(0.15, 1.0)], 0.1, [0.65, 0.06, 0.05]),
+        ] {
+            let mut text = format!(
+                "[render]\nintegrator = \"local\"\nintensity = \"radiometric\"\nsamples = 4\n[film]\nsize = [8, 8]\n\
+                 filter = \"box\"\n[camera]\nprojection = \"orthographic\"\neye = [{}, {}, {}]\nheight = 0.1\n[[material]]\n\
+                 name = \"vase\"\nmodel = \"cook-torrance\"\n{keys}[[object]]\nshape = \"quad\"\nrotate = [1, 0, 0, 90]\n\
+                 material = \"vase\"\n",
+                v.x, v.y, v.z
+            );
+            for (l, solid_angle) in lights {
+                text.push_str(&format!(
+                    "[[light]]\ntype = \"directional\"\ndirection = [{}, {}, {}]\nintensity = {}\n",
+                    -l.x,
+                    -l.y,
+                    -l.z,
+                    1e4 * solid_angle
+                ));
+            }
+            let expected: [f64; 3] = std::array::from_fn(|c| {
+                let of = |(l, solid_angle): (DVec3, f64)| {
+                    let h = (l + v).normalize();
+                    let tan2 = (1.0 - h.z * h.z) / (h.z * h.z);
+                    let lobe = |(m, w): &(f64, f64)| w * libm::exp(-tan2 / (m * m)) / (4.0 * m * m * h.z.powi(4));
+                    let d: f64 = lobes.iter().map(lobe).sum();
+                    let metal = s == 1.0;
+                    let (n, k) = if metal { (eta[c].into(), k[c].into()) } else { (1.5, 0.0) };
+                    let r_s = d * grooves(l, v) * conductor(v.dot(h), n, k) / (PI * v.z * l.z);
+                    1e4 * l.z * solid_angle * (s * r_s + (1.0 - s) * o_d[c] * FRAC_1_PI)
+                };
+                lights.into_iter().map(of).sum()
+            });
+            for (side, got) in middle(&text).into_iter().enumerate() {
+                let near = |c: usize| (got[c] - expected[c]).abs() < 2e-5 * expected[c] + 1e-6;
+                assert!((0..3).all(near), "{keys}{mirrored}, side {side}: {got:?} for {expected:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_sum_over_lights_is_row_5_s_formula() {
+    let (k_a, k_d, k_s, n) = (0.5, 0.6, 0.35, 12);
+    let (o_d, o_s, i_a) = ([0.8, 0.5, 0.2], [1.0, 0.9, 0.7], [0.3, 0.2, 0.1]);
+    let eye = DVec3::new(1.0, 0.5, 4.0);
+    // Place, I_p, its attenuation and what that leaves at distance d.
+    type Law = fn(f64) -> f64;
+    let lights: [(DVec3, f64, &str, Law); 4] = [
+        (DVec3::new(-1.0, 0.2, 3.0), 2.0, "[0.2, 0.1, 0.3]", |d| 1f64.min(1.0 / (0.2 + 0.1 * d + 0.3 * d * d))),
+        (DVec3::new(0.5, -0.3, 0.6), 0.25, "[0.2, 0.1, 0.3]", |d| 1f64.min(1.0 / (0.2 + 0.1 * d + 0.3 * d * d))),
+        (DVec3::new(2.0, 1.0, 2.0), 3.0, "\"inverse-square\"", |d| 1.0 / (d * d)),
+        (DVec3::new(-2.0, -1.0, 1.0), 0.4, "\"none\"", |_| 1.0),
+    ];
+    for model in ["phong", "blinn-phong"] {
+        let mut text = format!(
+            "[render]\nintegrator = \"whitted\"\nintensity = \"lecture\"\nambient = {i_a:?}\nsamples = 4\n[film]\nsize = [8, 8]\n\
+             filter = \"box\"\n[camera]\nprojection = \"orthographic\"\neye = [{}, {}, {}]\nheight = 1e-4\n[[material]]\n\
+             name = \"m\"\nmodel = \"{model}\"\ncolor = {o_d:?}\nspecular_color = {o_s:?}\nk_a = {k_a}\nk_d = {k_d}\nk_s = {k_s}\n\
+             exponent = {n}\n[[object]]\nshape = \"quad\"\nrotate = [1, 0, 0, 90]\nmaterial = \"m\"\n",
+            eye.x, eye.y, eye.z
+        );
+        for (place, i_p, law, _) in &lights {
+            text.push_str(&format!(
+                "[[light]]\ntype = \"point\"\nposition = [{}, {}, {}]\nintensity = {i_p}\nattenuation = {law}\n",
+                place.x, place.y, place.z
+            ));
+        }
+        let v = eye.normalize();
+        let expected: [f64; 3] = std::array::from_fn(|c| {
+            let of = |(place, i_p, _, attenuate): &(DVec3, f64, &str, Law)| {
+                let l = place.normalize();
+                let highlight = match model {
+                    "phong" => v.dot(DVec3::Z * (2.0 * l.z) - l).max(0.0),
+                    _ => (l + v).normalize().z,
+                };
+                attenuate(place.length()) * i_p * (k_d * o_d[c] * l.z + k_s * o_s[c] * highlight.powi(n))
+            };
+            i_a[c] * k_a * o_d[c] + lights.iter().map(of).sum::<f64>()
+        });
+        for (side, got) in middle(&text).into_iter().enumerate() {
+            let near = |c: usize| (got[c] - expected[c]).abs() < 1e-4 * expected[c];
+            assert!((0..3).all(near), "{model}, side {side}: {got:?} for {expected:?}");
+        }
+    }
 }
 
 #[test]

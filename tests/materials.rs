@@ -4,23 +4,25 @@
 mod chi_square;
 #[path = "common/mod.rs"]
 mod common;
+#[path = "common/tables.rs"]
+mod tables;
 
-use chi_square::{Random, direction, integrate_hemisphere, test_sampler};
+use chi_square::{Draws, Random, direction, integrate_hemisphere};
 use glam::Vec3;
 use gonio::bake::{SceneData, bake};
 use gonio::layout::MODEL_BLEND;
 use gonio::scene::load::load;
 use gonio::scene::*;
-use gonio::shading::material::{eval_material, pdf_material, sample_material};
+use gonio::shading::material::eval_material;
 use gonio::shading::sampling::SampleKey;
 use gonio::trace::surface::surface_at;
 use gonio::trace::traverse::trace_closest;
 use gonio::transport::DIMENSION_LEAF;
 use gonio::transport::textured::material_at;
-use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
+use std::f64::consts::FRAC_1_PI;
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
+use tables::merl_table;
 
 fn text(keys: &str) -> String {
     format!(
@@ -102,6 +104,15 @@ fn every_model_reads_its_own_keys() {
         panic!()
     };
     assert_eq!((lobes[0].distribution, masking), (Distribution::Gaussian, Masking::Smith));
+    let Model::CookTorrance { lobes, .. } = model(
+        "model = \"cook-torrance\"\ndistribution = \"trowbridge-reitz\"\n\
+         lobes = [{ m = [0.1, 0.4], weight = 0.7 }, { m = 0.5, weight = 0.3, distribution = \"phong\" }]",
+    ) else {
+        panic!()
+    };
+    let lobe = |distribution, alpha_u, alpha_v, weight| Lobe { distribution, alpha_u, alpha_v, weight };
+    assert_eq!(lobes[0], lobe(Distribution::TrowbridgeReitz, 0.1, 0.4, 0.7));
+    assert_eq!(lobes[1], lobe(Distribution::Phong, 0.5, 0.5, 0.3));
 }
 
 #[test]
@@ -114,6 +125,8 @@ fn wrong_models_and_values_are_refused_with_their_place_and_what_was_meant() {
     assert!(error.contains("needs \"metal\""), "{error}");
     let error = refused("model = \"rough-plastic\"\nalpha = [0.1, 0.2]");
     assert!(error.contains("isotropic"), "{error}");
+    let error = refused("model = \"cook-torrance\"\nm = [0.1, 0.2]\ndistribution = \"gaussian\"");
+    assert!(error.contains(":10:") && error.contains("isotropic"), "{error}");
     let error = refused("model = \"rough-dielectric\"\nalpha = 3");
     assert!(error.contains("0.001 to 2"), "{error}");
     let error = refused("model = \"blend\"\nmaterials = [\"m\", \"n\"]");
@@ -178,29 +191,14 @@ fn blends_of_themselves_or_of_too_many_are_refused() {
     assert!(baked(chain(8), Vec::new()).is_err());
 }
 
-/// A table of a function of theta_h and theta_d at the cells' centres.
-fn merl(f: impl Fn(f64, f64) -> f64) -> Vec<f32> {
-    let mut values = Vec::new();
-    for _ in 0..3 {
-        for h in 0..90 {
-            let x = (f64::from(h) + 0.5) / 90.0;
-            for d in 0..90 {
-                let value = f(FRAC_PI_2 * x * x, FRAC_PI_2 * (f64::from(d) + 0.5) / 90.0) as f32;
-                values.extend([value; 180]);
-            }
-        }
-    }
-    values
-}
-
-fn measured(values: Vec<f32>) -> SceneData {
+fn measured(table: Table) -> SceneData {
     let material = Material { model: Model::Measured { table: TableId(0) }, ..Material::grey("measured") };
-    baked(vec![material], vec![Table::Merl { values: Arc::new(values) }]).expect("baked")
+    baked(vec![material], vec![table]).expect("baked")
 }
 
 #[test]
 fn a_measured_table_gives_its_values_back_wherever_light_and_viewer_are() {
-    let data = measured(merl(|theta_h, theta_d| theta_h + 10.0 * theta_d));
+    let data = measured(merl_table(|theta_h, theta_d| theta_h + 10.0 * theta_d));
     let mut random = Random(3);
     for _ in 0..5000 {
         let (wo, wi) = (random.upper_direction(), random.upper_direction());
@@ -216,34 +214,19 @@ fn a_measured_table_gives_its_values_back_wherever_light_and_viewer_are() {
 
 #[test]
 fn samples_of_a_measured_table_follow_their_density_and_its_shine() {
-    let data = measured(merl(|theta_h, _| 0.05 + 3.0 * libm::exp(-(theta_h / 0.3).powi(2))));
+    let data = measured(merl_table(|theta_h, _| 0.05 + 3.0 * libm::exp(-(theta_h / 0.3).powi(2))));
     let (view, material) = (data.view(), data.materials[0]);
     for z in [1.0, 0.6, 0.2] {
         let wo = direction(z, 0.5);
-        let mut random = Random(11);
-        let (result, integral) = test_sampler(
-            60_000,
-            || {
-                let sample = sample_material(&view, &material, wo, random.unit2(), random.unit());
-                (sample.pdf > 0.0).then_some(sample.wi)
-            },
-            &|wi| f64::from(pdf_material(&view, &material, wo, wi)),
-        );
+        let draws = Draws::new(view, material, wo, 60_000);
+        let (result, integral) = draws.against_density();
         assert!(result.p_value > 1e-4, "{z}: {result:?}");
         assert!(integral < 1.01, "{z}: {integral}");
-        let (mut sum, mut squares, count) = (0.0, 0.0, 40_000);
-        for _ in 0..count {
-            let sample = sample_material(&view, &material, wo, random.unit2(), random.unit());
-            let weight = if sample.pdf > 0.0 { f64::from(sample.weight.x) } else { 0.0 };
-            sum += weight;
-            squares += weight * weight;
-        }
-        let mean = sum / f64::from(count);
-        let error = libm::sqrt((squares / f64::from(count) - mean * mean) / f64::from(count));
+        let mean = draws.mean(|sample| f64::from(sample.weight.x));
         let expected = integrate_hemisphere(&|wi| f64::from(eval_material(&view, &material, wo, wi).x), 96);
-        assert!((mean - expected).abs() < 4.5 * error + 5e-3, "{z}: {mean} +- {error}, {expected}");
+        assert!((mean.value - expected).abs() < 4.5 * mean.error + 5e-3, "{z}: {mean:?}, {expected}");
         // Drawn from the table: the deviation of one weight stays near the mean.
-        assert!(error * libm::sqrt(f64::from(count)) < 1.5 * mean, "{z}: {error}");
+        assert!(mean.deviation < 1.5 * mean.value, "{z}: {mean:?}");
     }
 }
 

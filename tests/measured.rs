@@ -11,13 +11,13 @@ mod scenes;
 mod tables;
 
 use baked::Baked;
-use chi_square::{Random, direction, integrate_hemisphere, sidak, test_sampler};
+use chi_square::{Draws, Random, direction, integrate_hemisphere, sidak};
 use glam::{DVec3, Vec3};
 use gonio::bake::{SceneData, bake};
 use gonio::layout::{MATERIAL_ANISOTROPIC, MODEL_MEASURED, MODEL_TABULATED};
 use gonio::scene::load::load;
 use gonio::scene::*;
-use gonio::shading::material::{eval_material, pdf_material, sample_material};
+use gonio::shading::material::eval_material;
 use std::f64::consts::{FRAC_1_PI, PI};
 use std::fs;
 use std::path::Path;
@@ -187,34 +187,18 @@ fn samples_of_a_table_follow_their_density_and_what_it_reflects() {
     for (name, data) in &cases {
         let (view, material) = (data.view(), data.materials[0]);
         for wo in views {
-            let mut random = Random(11);
-            let (result, integral) = test_sampler(
-                60_000,
-                || {
-                    let sample = sample_material(&view, &material, wo, random.unit2(), random.unit());
-                    (sample.pdf > 0.0).then_some(sample.wi)
-                },
-                &|wi| f64::from(pdf_material(&view, &material, wo, wi)),
-            );
+            let draws = Draws::new(view, material, wo, 60_000);
+            let (result, integral) = draws.against_density();
             assert!(result.p_value > significance, "{name} {wo}: {result:?}");
             assert!((integral - 1.0).abs() < 5e-3, "{name} {wo}: {integral}");
-            let (mut sum, mut squares, count) = (0.0, 0.0, 40_000);
-            for _ in 0..count {
-                let sample = sample_material(&view, &material, wo, random.unit2(), random.unit());
-                let weight = if sample.pdf > 0.0 { f64::from(sample.weight.x) } else { 0.0 };
-                sum += weight;
-                squares += weight * weight;
-            }
-            let mean = sum / f64::from(count);
-            let deviation = libm::sqrt((squares / f64::from(count) - mean * mean).max(0.0));
+            let mean = draws.mean(|sample| f64::from(sample.weight.x));
             let value = |wi| f64::from(eval_material(&view, &material, wo, wi).x);
             let expected = integrate_hemisphere(&value, 96);
-            let error = deviation / libm::sqrt(f64::from(count));
-            assert!((mean - expected).abs() < 4.5 * error + 3e-3, "{name} {wo}: {mean} +- {error}, {expected}");
+            assert!((mean.value - expected).abs() < 4.5 * mean.error + 3e-3, "{name} {wo}: {mean:?}, {expected}");
             // What cosine-weighted directions would deviate by.
             let squared = integrate_hemisphere(&|wi| value(wi).powi(2) * PI / f64::from(wi.z), 96);
             let blind = libm::sqrt(squared - expected * expected);
-            assert!(*name != "brushed" || deviation < 0.4 * blind, "{wo}: {deviation}, {blind} without the table");
+            assert!(*name != "brushed" || mean.deviation < 0.4 * blind, "{wo}: {mean:?}, {blind} without the table");
         }
     }
 }

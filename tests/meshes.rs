@@ -1,5 +1,9 @@
 //! Models from files: PLY, glTF, pictures, and the stage they are shown on.
 
+#[path = "common/assets.rs"]
+mod assets;
+
+use assets::asset;
 use glam::{DVec3, Vec2, Vec3};
 use gonio::scene::load::image::{ColorSpace, load_texture, texture_from_bytes};
 use gonio::scene::load::{ply, staging};
@@ -7,18 +11,7 @@ use gonio::scene::{
     Background, Camera, Geometry, Light, LightKind, Mesh, MeshId, Object, Projection, Rgb, Scene, TextureData,
     Transform, shape,
 };
-use std::path::{Path, PathBuf};
-
-/// A file or folder of the assets; None, with a line saying so, where they are not installed.
-fn asset(name: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("GONIO_ASSETS").map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
-    let path = root.join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    println!("SKIPPED: no {name} in the assets");
-    None
-}
+use std::path::Path;
 
 fn read_ply(bytes: &[u8]) -> Mesh {
     ply::mesh_from_bytes(bytes, Path::new("test.ply")).expect("a valid file")

@@ -31,8 +31,9 @@ fn assert_scene_parity(scene: Scene, take: Take) -> Option<()> {
     let scene = taken(scene, take);
     let data = bake(&scene).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     let reference = render_cpu(&scene, &data);
-    for fetch in [FetchChoice::Texel, FetchChoice::Storage] {
-        let mut renderer = vulkan(&data, VulkanOptions { fetch, ..VulkanOptions::default() })?;
+    // Shaded in groups, as large pictures are, and all at once.
+    for (fetch, group_from) in [(FetchChoice::Texel, Some(0)), (FetchChoice::Storage, None)] {
+        let mut renderer = vulkan(&data, VulkanOptions { fetch, group_from, ..VulkanOptions::default() })?;
         let film = render(&mut *renderer, &scene, &data, 0..take.samples);
         assert_same(&reference, &film, &format!("{} {take:?} {fetch:?}", scene.name));
     }

@@ -4,39 +4,28 @@
 mod common;
 #[path = "common/scenes.rs"]
 mod scenes;
+#[path = "common/statistics.rs"]
+mod statistics;
 
 use common::{empty_scene, globe, object};
 use glam::{Vec2, Vec3};
 use gonio::bake::{SceneData, bake};
 use gonio::scene::*;
 use scenes::render_cpu;
-
-/// Mean of a channel over the picture, and its standard error: pixels are independent of one another.
-#[derive(Clone, Copy, Debug)]
-struct Mean {
-    value: f64,
-    error: f64,
-}
+use statistics::Mean;
 
 fn mean_of(scene: &Scene, data: &SceneData, channel: usize) -> Mean {
-    let pixels = render_cpu(scene, data).resolve().pixels;
-    let values: Vec<f64> = pixels.iter().map(|pixel| f64::from(pixel[channel])).collect();
-    let count = values.len() as f64;
-    let value = values.iter().sum::<f64>() / count;
-    let variance = values.iter().map(|v| (v - value) * (v - value)).sum::<f64>() / (count - 1.0);
-    Mean { value, error: (variance / count).sqrt() }
+    Mean::of_channel(&render_cpu(scene, data).resolve().pixels, channel)
 }
 
 fn mean(scene: &Scene) -> Mean {
     mean_of(scene, &bake(scene).expect("bakes"), 1)
 }
 
-/// Five standard errors, one in two million; and 1e-5 of the value for rounding (of e^-x, and of where
-/// rays start) where there is no noise.
+/// 1e-5 of the value for rounding (of e^-x, and of where rays start) where there is no noise.
 #[track_caller]
 fn assert_mean(found: Mean, wanted: f64, what: &str) {
-    let tolerance = 5.0 * found.error + 1.0e-5 * wanted;
-    assert!((found.value - wanted).abs() <= tolerance, "{what}: {found:?} instead of {wanted}");
+    found.assert_is(wanted, 1.0e-5, what);
 }
 
 #[track_caller]

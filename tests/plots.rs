@@ -6,7 +6,7 @@ use gonio::film::tone::tone_curve;
 use gonio::layout::{DISTRIBUTION_BECKMANN, DISTRIBUTION_TROWBRIDGE_REITZ};
 use gonio::plot::curves::{self, FACETS, Interface, InterfaceKind, direction};
 use gonio::plot::figure::{Axis, Curve, Frame, nice_step, number};
-use gonio::plot::lecture::{ROWS, caption, numbered};
+use gonio::plot::lecture::{ROWS, caption, numbered, plots};
 use gonio::plot::page::{Entry, Part, mathml, page};
 use gonio::plot::panels::{Picture, sheet};
 use gonio::plot::shelf::{Shelf, shelf_of};
@@ -148,6 +148,74 @@ fn lobes_are_the_materials_own() {
 }
 
 #[test]
+fn what_a_body_transmits_hangs_below_its_surface() {
+    let clear = |name: &str, model| Material { name: name.into(), model, color: Rgb::ONE, ..Material::grey("") };
+    let frosted = Model::RoughDielectric {
+        distribution: gonio::scene::Distribution::TrowbridgeReitz,
+        alpha_u: 0.3,
+        alpha_v: 0.3,
+        eta: 1.5,
+        absorption: Rgb::ZERO,
+    };
+    let shelf = shelf_of(vec![clear("frosted", frosted), clear("matt", Model::Lambert)]).unwrap();
+    let Frame::Bodies(bodies) = lobes::bodies_figure(&shelf, &[0, 1], 45.0).frame else { panic!("bodies") };
+    // The surface's own edge nearest to the viewer is at .4 - .46 sin 25 degrees = .206.
+    let lowest = |i: usize| bodies[i].facets.iter().flat_map(|f| &f.corners).map(|[_, y]| *y).fold(1.0, f64::min);
+    assert!(lowest(0) < 0.17 && lowest(0) >= 0.0 && (lowest(1) - 0.206).abs() < 1e-3, "{} {}", lowest(0), lowest(1));
+    assert!(bodies[0].facets.len() > 3 * bodies[1].facets.len() / 2, "two shells and one");
+}
+
+#[test]
+fn lamps_fall_off_as_the_renderer_s_do() {
+    let figure = curves::attenuation_figure([0.6, 0.35, 0.05]);
+    for (curve, expected) in figure.curves.iter().zip([1.0 / 16.0, 1.0 / (0.6 + 1.4 + 0.8), 1.0]) {
+        assert!((value_at(curve, 4.0) - expected).abs() < 1e-6, "{}", curve.name);
+    }
+    assert_eq!(value_at(&figure.curves[1], 0.0), 1.0, "capped");
+}
+
+#[test]
+fn filters_are_normalised_and_mitchell_s_has_negative_lobes() {
+    let figure = curves::filter_figure();
+    for curve in &figure.curves {
+        let step = curve.points[1][0] - curve.points[0][0];
+        let area = curve.points.iter().map(|point| point[1]).sum::<f64>() * step;
+        assert!((area - 1.0).abs() < 1e-9, "{}: {area}", curve.name);
+        assert_eq!(curve.points.iter().any(|point| point[1] < -0.01), curve.name == "mitchell", "{}", curve.name);
+    }
+    // Tent: 1 at the pixel's centre, one half half a pixel beside it.
+    assert!((value_at(&figure.curves[1], 0.0) - 1.0).abs() < 1e-3);
+    let file =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/lecture/05-attenuation.toml"));
+    assert!(file.unwrap().contains("attenuation=[0.6,0.35,0.05]"), "curves::CAPPED are the scene's");
+    assert_eq!(curves::CAPPED, [0.6, 0.35, 0.05]);
+}
+
+#[test]
+fn every_row_has_a_scene_and_a_formula_and_the_plots_that_say_more() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/lecture");
+    let mut plotted = Vec::new();
+    let mut found = Vec::new();
+    for file in std::fs::read_dir(&folder).unwrap().map(|file| file.unwrap().path()) {
+        let stem = file.file_stem().unwrap().to_string_lossy().into_owned();
+        let (Some(row), title) = numbered(&stem) else { panic!("{stem} has no row") };
+        found.push(row);
+        assert!(ROWS.iter().any(|known| known.number == row && !known.formulae.is_empty()), "{stem}");
+        let scene = gonio::scene::load::load(&file, &[]).unwrap();
+        let figures = plots(row, title, &scene).unwrap_or_else(|error| panic!("{stem}: {error}"));
+        plotted.extend(figures.iter().map(|_| row));
+    }
+    // 4, 11, 22, 24 and 25 are seen, not plotted.
+    for row in ROWS.iter().map(|row| row.number) {
+        assert!(found.contains(&row), "row {row} has no scene");
+        assert_eq!(plotted.contains(&row), ![4, 11, 22, 24, 25, 27].contains(&row), "row {row}");
+    }
+    for row in (1..=11).chain(14..=19).chain(21..=24).chain([26, 27]) {
+        assert!(found.contains(&row), "row {row} has no scene");
+    }
+}
+
+#[test]
 fn albedo_of_lambert_is_its_colour_and_of_a_mirror_its_reflectance() {
     let figure = lobes::albedo_figure(&shelf(), &[0, 2]);
     assert!(figure.curves[0].points.iter().all(|p| (p[1] - 0.5).abs() < 1e-4), "{:?}", figure.curves[0].points);
@@ -265,9 +333,10 @@ fn the_page_needs_nothing_else_and_escapes_what_it_shows() {
         caption: "x < y & z".into(),
         pictures: vec![(Some("n < 2".into()), vec![1, 2, 3]), (Some("n > 2".into()), vec![4, 5, 6])],
         columns: 2,
+        plots: vec!["<svg></svg>".into()],
         text: "# <b>\n".into(),
     };
-    let page = page("T", &[Part { entries: vec![entry], plots: vec!["<svg></svg>".into()] }]);
+    let page = page("T", &[Part { entries: vec![entry] }]);
     assert!(page.contains("x &lt; y &amp; z") && page.contains("# &lt;b&gt;") && page.contains("base64,AQID"));
     assert!(page.contains("<h2>2 · Phong's highlight</h2>") && page.contains("<a href=\"#row-2\">"), "{page}");
     assert!(page.contains("<figcaption>n &lt; 2</figcaption>") && page.contains("<math"), "{page}");

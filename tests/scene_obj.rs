@@ -1,5 +1,9 @@
 //! OBJ and MTL: geometry, attributes and materials.
 
+#[path = "common/assets.rs"]
+mod assets;
+
+use assets::asset;
 use glam::{Vec2, Vec3};
 use gonio::scene::load::obj;
 use gonio::scene::*;
@@ -172,11 +176,7 @@ fn a_missing_library_is_a_warning() {
 
 #[test]
 fn the_collected_obj_files_load_with_the_triangles_they_are_known_for() {
-    let assets = std::env::var_os("GONIO_ASSETS").map_or(PathBuf::from("../shared/assets"), PathBuf::from);
-    if !assets.is_dir() {
-        println!("SKIPPED: no {}", assets.display());
-        return;
-    }
+    let Some(assets) = asset("") else { return };
     // Counts from the assets' README; with Kd maps: textures.
     for (name, triangles, textures) in [
         ("kitchen/kitchen.obj", 56_939, 0),

@@ -1,5 +1,9 @@
 //! Named shapes: closed where they should be, the right way out, the right size, uvs in range.
 
+#[path = "common/assets.rs"]
+mod assets;
+
+use assets::asset;
 use glam::{DVec3, Vec3};
 use gonio::scene::Mesh;
 use gonio::scene::shape::{
@@ -239,11 +243,8 @@ fn distance_squared(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
 
 #[test]
 fn teapot_lies_within_a_fiftieth_of_the_published_mesh() {
-    let root = std::env::var("GONIO_ASSETS").unwrap_or_else(|_| "../shared/assets".to_owned());
-    let Ok(text) = std::fs::read_to_string(format!("{root}/meshes/teapot.obj")) else {
-        println!("SKIPPED: no meshes/teapot.obj");
-        return;
-    };
+    let Some(file) = asset("meshes/teapot.obj") else { return };
+    let text = std::fs::read_to_string(file).expect("readable");
     let points = text.lines().filter_map(|l| l.strip_prefix("v ")).map(|l| {
         let mut numbers = l.split_whitespace().map(|t| t.parse::<f64>().expect("a number"));
         DVec3::from_array(std::array::from_fn(|_| numbers.next().expect("three numbers")))

@@ -69,6 +69,7 @@ sort -s -t '	' -k2,2 "$WORK/rates" | awk -F '\t' '
         rate[row, $4, $1] = $5
         if ($1 > rounds) rounds = $1
     }
+    function number(x) { return sprintf(x < 1 ? "%.3f" : "%.2f", x) }
     function ratio(row, over, under,    i, n, list) {
         for (i = 1; i <= rounds; i++) if ((row, over, i) in rate && (row, under, i) in rate && rate[row, under, i] > 0) {
             list = list " " rate[row, over, i] / rate[row, under, i]
@@ -86,7 +87,7 @@ sort -s -t '	' -k2,2 "$WORK/rates" | awk -F '\t' '
             for (t = 1; t <= tracer_count; t++) {
                 list = ""; n = 0
                 for (i = 1; i <= rounds; i++) if ((row, tracers[t], i) in rate) { list = list " " rate[row, tracers[t], i]; n++ }
-                printf "\t%s", n ? sprintf("%.2f", median(list, n)) : "-"
+                printf "\t%s", n ? number(median(list, n)) : "-"
             }
             print "\t" ratio(row, "gonio vulkan", "embree robust") "\t" ratio(row, "gonio vulkan", "embree fast") \
                 "\t" ratio(row, "gonio cpu", "obvhs") "\t" ratio(row, "gonio cpu", "embree robust")

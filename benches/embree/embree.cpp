@@ -219,7 +219,7 @@ void bench(RTCDevice device, const std::string& folder, int runs, int warmup) {
         const auto start = std::chrono::steady_clock::now();
         RTCScene closest = build(device, all, robust);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        std::fprintf(stderr, "%s: %s: build %.2f s\n", name.c_str(), tracer, seconds);
+        std::fprintf(stderr, "%s: %s: build %.4f s\n", name.c_str(), tracer, seconds);
         RTCScene any = all.ids.size() + all.instances.size() == casting.ids.size() + casting.instances.size()
                            ? closest
                            : build(device, casting, robust);

@@ -8,6 +8,7 @@
 #define KERNELS_BINDINGS_GLSL
 #define GONIO_FETCH
 
+#include "layout/control.glsl"
 #include "layout/header.glsl"
 
 layout(local_size_x_id = 0, local_size_y = 1, local_size_z = 1) in;
@@ -61,6 +62,14 @@ layout(constant_id = 26) const bool SCENE_SHADOWLESS = true;
 layout(constant_id = 27) const bool SCENE_HIDES_EMITTERS = true;
 // Contributions have a limit.
 layout(constant_id = 28) const bool SCENE_HAS_CLAMP = true;
+// Whether paths are shaded in groups by the model they hit, each by a kernel that has its models for `MODELS_PRESENT`.
+layout(constant_id = 31) const bool SHADE_GROUPED = false;
+// Which of them a kernel shades.
+layout(constant_id = 29) const uint SHADE_GROUP = SHADE_GROUP_MISSED;
+// The one model of that group, or INVALID if there are more. Said of a material once it is found, so that drivers leave out
+// what the model excludes.
+layout(constant_id = 30) const uint SHADE_MODEL = 0xffffffffu;
+#define NAME_MODEL(material) if (SHADE_MODEL != INVALID) material.model = SHADE_MODEL;
 
 // Set 0: the scene.
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };
@@ -129,6 +138,8 @@ uvec4 fetch_shadow(uint at) { return shadow_words[at]; }
 // Arrays of single words in the data heap, as the Rust twins' slices.
 uint load_top_instance(uint index) { return fetch_data(header.first_top_instance + (index >> 2u))[index & 3u]; }
 uint load_texel(uint word) { return fetch_data(header.first_texel + (word >> 2u))[word & 3u]; }
+// The model of a material, without the rest of it.
+uint load_model(uint material) { return fetch_data(header.first_material + material * MATERIAL_WORDS).w; }
 float load_table(uint index) { return uintBitsToFloat(fetch_data(header.first_table + (index >> 2u))[index & 3u]); }
 
 layout(set = 1, binding = 0, scalar) coherent buffer ControlBlock { Control control; };
@@ -139,6 +150,8 @@ layout(set = 1, binding = 4, scalar) buffer ShadowBlock { ShadowRay shadows[]; }
 layout(set = 1, binding = 5, scalar) coherent buffer SlotBlock { FilmSum slots[]; };
 layout(set = 1, binding = 6, scalar) coherent buffer FilmBlock { FilmSum film[]; };
 layout(set = 1, binding = 7, scalar) coherent buffer AovBlock { AovPixel aovs[]; };
+
+layout(set = 1, binding = 12, scalar) buffer OrderBlock { uint order[]; };
 
 layout(push_constant, scalar) uniform BatchBlock { Batch batch; };
 

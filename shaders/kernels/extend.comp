@@ -1,16 +1,29 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// The closest hit of every ray in the chunk. Copies the chunk out of its level, so that shade may append to that level.
+// The closest hit of every ray in the chunk, and the group in which it is shaded, if there are groups. Copies the chunk out of its level, so that
+// shade may append to that level.
 #define PATHS_FROM_LEVELS
 #include "kernels/bindings.glsl"
 #include "kernels/queues.glsl"
 #include "trace/traverse.glsl"
 
+// The group of what was hit: models that the scene has are numbered in their order.
+uint shade_group(Hit hit) {
+    if (hit.instance == INVALID) return SHADE_GROUP_MISSED;
+    Instance instance = load_instance(hit.instance);
+    bool by_face = instance.material == INVALID && instance.kind != KIND_SPHERE;
+    uint material = by_face ? load_face(instance.first_face + hit.primitive).material : instance.material;
+    uint model = load_model(material);
+    return 1u + uint(bitCount(MODELS_PRESENT & ~(0xffffffffu << model)));
+}
+
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= control.chunk_count) return;
     PathState path = load_path_state(level_first(control.chunk_level) + control.chunk_first + i);
-    hits[i] = trace_closest(path.ray);
+    Hit hit = trace_closest(path.ray);
+    hits[i] = hit;
     chunk[i] = path;
+    if (SHADE_GROUPED) push_shade(shade_group(hit), i);
 }

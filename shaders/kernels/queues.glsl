@@ -3,6 +3,7 @@
 #define KERNELS_QUEUES_GLSL
 
 #include "transport/film.glsl"
+#include "transport/generate.glsl"
 
 // First entry of a level in the level buffer.
 uint level_first(uint level) {
@@ -19,6 +20,13 @@ void push_path(PathState path) {
         return;
     }
     levels[level_first(level) + at] = path;
+}
+
+// Appends path `i` of the chunk to a group. A group begins after as many entries as the chunk has for each before it.
+void push_shade(uint group, uint i) {
+    uint at = atomicAdd(control.shade_count[group], 1u);
+    order[group * control.chunk_count + at] = i;
+    if (at % GROUP_SIZE == 0u) atomicAdd(control.shade[group].x, 1u);
 }
 
 // Appends a shadow ray. Where the shadow kernel does so while others are read, to the half of the queue that is not.
@@ -56,7 +64,7 @@ void add_contribution(float scale, uint slot, vec4 value, uint dither) {
 
 // Records the first hit of a camera ray for the auxiliary channels.
 void add_aov(PathState path, float depth, vec3 normal, vec3 albedo, uint object, uint material) {
-    uint index = batch.first_pixel + path.slot % batch.pixel_count;
+    uint index = slot_pixel(batch, path.slot);
     for (uint lane = 0u; lane < 3u; lane++) {
         Fixed normal_units = to_fixed(normal[lane], AOV_SCALE, 0.5);
         ATOMIC_ADD_FIXED(aovs[index].normal, lane, normal_units)

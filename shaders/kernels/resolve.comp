@@ -12,8 +12,8 @@ void main() {
     uint index = batch.first_pixel + pixel;
     FilmSum sum = film[index];
     uint clamped_count = 0u;
-    for (uint slot = pixel; slot < batch.slot_count; slot += batch.pixel_count) {
-        FilmSum seen = slots[slot];
+    for (uint s = 0u; s < batch.sample_count; s++) {
+        FilmSum seen = slots[pixel * batch.sample_count + s];
         uint clamped = 0u;
         for (uint lane = 0u; lane < 4u; lane++) {
             Fixed units = clamp_sample(seen.low[lane], seen.high[lane]);

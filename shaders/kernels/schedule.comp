@@ -34,7 +34,12 @@ void main() {
     control.chunk_first = control.level_count[control.chunk_level] - control.chunk_count;
     control.level_count[control.chunk_level] = control.chunk_first;
     control.extend = DispatchArguments(groups(control.chunk_count), 1u, 1u);
-    control.shade = control.extend;
+    // Without groups all paths are in the first; else extend fills them.
+    for (uint group = 0u; group < MAX_SHADE_GROUPS; group++) {
+        uint count = SHADE_GROUPED || group > 0u ? 0u : control.chunk_count;
+        control.shade_count[group] = count;
+        control.shade[group] = DispatchArguments(groups(count), 1u, 1u);
+    }
     control.shadow = DispatchArguments(groups(control.shadow_pending), 1u, 1u);
     control.done = (control.chunk_count | control.shadow_pending) == 0u ? 1u : 0u;
     control.rounds += control.done == 0u ? 1u : 0u;

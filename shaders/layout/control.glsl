@@ -4,6 +4,9 @@
 
 // Levels of pending rays: one per scattering depth, 0 to 64.
 const uint MAX_LEVELS = 66u;
+// Groups of paths that are shaded together: those that hit nothing, and one for each model.
+const uint MAX_SHADE_GROUPS = 24u;
+const uint SHADE_GROUP_MISSED = 0u;
 
 // Arguments of an indirect dispatch, in workgroups.
 struct DispatchArguments {
@@ -12,13 +15,16 @@ struct DispatchArguments {
     uint z;
 };
 
-// One per device. 380 bytes.
+// One per device. 752 bytes.
 // A round is: schedule; extend (this round's chunk) and shadow (last round's queue); shade.
 struct Control {
     // Indirect arguments written by schedule.
     DispatchArguments extend;
     DispatchArguments shadow;
-    DispatchArguments shade;
+    // By extend: of each group.
+    DispatchArguments shade[MAX_SHADE_GROUPS];
+    // Paths of the chunk in each group.
+    uint shade_count[MAX_SHADE_GROUPS];
     // 1 once no level and no shadow ray is pending.
     uint done;
     // Level the chunk was taken from, its first entry and its size.

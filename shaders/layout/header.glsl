@@ -105,7 +105,8 @@ struct SceneHeader {
 const uint FILTER_KNOTS = 256u;
 
 // What one batch of samples covers. 48 bytes.
-// Slot i is pixel `first_pixel + i % pixel_count` of the crop (row by row) and sample `first_sample + i / pixel_count`.
+// Slot i is pixel `first_pixel + i / sample_count` of the crop (row by row) and sample `first_sample + i % sample_count`:
+// what runs side by side looks the same way.
 struct Batch {
     // Corner and size of the crop, pixels of the full frame.
     uint crop_x;

@@ -90,20 +90,30 @@ float stretched_sine(float alpha_u, float alpha_v, vec3 w) {
 }
 
 // Smith's Lambda of a direction, >= 0: 1 / (1 + Lambda) of the facets that face `w` are seen from there. |w.z| > 0.
-// Exact for Trowbridge and Reitz; for Beckmann (and, as Walter, for the others) the rational fit, within .35 %.
+// Exact for Trowbridge and Reitz; for Beckmann (and the Gaussian, whose own has no closed form) the rational fit, within .35 %.
+// Phong's slopes are Student's (Ribardiere et al. 2017) with Lambda = C (tan sin^(n+1) / (n+1) - the integral of sin^(n+1) up
+// to theta), C its inverse over 0..pi: Trowbridge and Reitz's at n = 0, Beckmann's for n without bound, and between the two
+// their mean by 1 / (n + 1), whose 1 / (1 + Lambda) is within 1 %.
 // Source: Walter et al. 2007, equations 15 and 34; Heitz 2014.
 float smith_lambda(uint kind, float alpha_u, float alpha_v, vec3 w) {
     float cos_w = abs(w.z);
-    float across = stretched_sine(alpha_u, kind == DISTRIBUTION_BECKMANN || kind == DISTRIBUTION_TROWBRIDGE_REITZ ? alpha_v : alpha_u, w);
+    float a_u = kind == DISTRIBUTION_PHONG ? min_(alpha_u, 1.0) : alpha_u;
+    bool along_both = kind == DISTRIBUTION_BECKMANN || kind == DISTRIBUTION_TROWBRIDGE_REITZ;
+    float across = stretched_sine(a_u, along_both ? alpha_v : a_u, w);
+    float t = div(across, max_(cos_w, COS_MIN));
+    float long_tailed = 0.5 * (sqrt_(1.0 + t * t) - 1.0);
     if (kind == DISTRIBUTION_TROWBRIDGE_REITZ) {
-        float t = div(across, max_(cos_w, COS_MIN));
-        return 0.5 * (sqrt_(1.0 + t * t) - 1.0);
+        return long_tailed;
     }
-    if (cos_w >= 1.6 * across) {
-        return 0.0;
+    float short_tailed = 0.0;
+    if (cos_w < 1.6 * across) {
+        float a = div(max_(cos_w, COS_MIN), across);
+        short_tailed = div(1.0 + a * (-1.259 + a * 0.396), a * (3.535 + a * 2.181));
     }
-    float a = div(max_(cos_w, COS_MIN), across);
-    return div(1.0 + a * (-1.259 + a * 0.396), a * (3.535 + a * 2.181));
+    if (kind != DISTRIBUTION_PHONG) {
+        return short_tailed;
+    }
+    return mix_(short_tailed, long_tailed, rcp(1.0 + phong_exponent(a_u)));
 }
 
 // Smith's masking of one direction, 0..1.

@@ -17,8 +17,6 @@ const float QUARTER_PI = 0.785398185;
 const float INV_PI = 0.318309873;
 const float INV_TWO_PI = 0.159154937;
 const float INV_FOUR_PI = 0.0795774683;
-const float SQRT_TWO = 1.41421354;
-const float LN_TWO = 0.693147182;
 const float LOG2_E = 1.44269502;
 // 2^-100. Division and roots take anything smaller for zero.
 const float TINY = 7.88860905e-31;

@@ -1,6 +1,7 @@
 // The walk through the two-level hierarchy.
 //
-// Ylitie, Karras and Laine 2017, algorithm 1, without triangle postponing: a *group* is (first inner child, hit bits of
+// Ylitie, Karras and Laine 2017, algorithm 1, with up to three groups of triangles postponed (Aila and Laine 2009,
+// "Understanding the Efficiency of Ray Traversal on GPUs", section 4): a *group* is (first inner child, hit bits of
 // the children in the top byte | mask of inner children in the lowest byte), a *primitive group* is (first primitive, one
 // bit a primitive). What is not taken yet waits on a stack. Each turn takes one node or one primitive off, so the loops end.
 //
@@ -91,10 +92,14 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
     uvec2 stack[STACK_DEPTH + 1u];
     uint height = 0u;
     uvec2 group = uvec2(root, GROUP_ROOT);
+    // What waits to be tested, the last found first. Lanes wait for one another at the end of either loop; what each
+    // may put aside evens out what they wait for.
     uvec2 triangles = uvec2(0u);
+    uvec2 triangles1 = uvec2(0u);
+    uvec2 triangles2 = uvec2(0u);
     bool walking = true;
     for (uint turn = 0u; turn < TURNS_MOST; turn++) {
-        // Nodes until there are triangles.
+        // Nodes until there is no room for more triangles.
         for (uint step_ = 0u; step_ < TURNS_MOST; step_++) {
             uint index = take_child(group, level.octant);
             stack[height] = group;
@@ -102,7 +107,11 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
             Node node = load_node(index);
             uint hits = approx_intersect_node(node, level, MESH_MARGIN, hit.t);
             group = uvec2(node.child_base, (hits & 0xff000000u) | (node.exponents_imask >> 24u));
-            triangles = uvec2(node.primitive_base, hits & GROUP_EMPTY);
+            if ((hits & GROUP_EMPTY) != 0u) {
+                triangles2 = triangles1;
+                triangles1 = triangles;
+                triangles = uvec2(node.primitive_base, hits & GROUP_EMPTY);
+            }
             if (group.y <= GROUP_EMPTY) {
                 walking = height != 0u;
                 if (walking) {
@@ -110,15 +119,20 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
                     group = stack[height];
                 }
             }
-            if (!walking || triangles.y != 0u) {
+            if (!walking || triangles2.y != 0u) {
                 break;
             }
         }
         for (uint step_ = 0u; step_ < TURNS_MOST; step_++) {
             if (triangles.y != 0u) {
                 test_triangle(ray, level, instance, take_primitive(triangles), hit);
+                if (triangles.y == 0u) {
+                    triangles = triangles1;
+                    triangles1 = triangles2;
+                    triangles2.y = 0u;
+                }
             }
-            if (triangles.y == 0u) {
+            if (triangles.y == 0u || (any && hit.instance != INVALID)) {
                 break;
             }
         }

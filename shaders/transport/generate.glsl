@@ -16,7 +16,7 @@ SampleKey sample_key(uint pixel, uint sample_index, uint path_id) {
 
 // Pixel of a slot, counted row by row in the crop.
 uint slot_pixel(Batch batch, uint slot) {
-    return batch.first_pixel + slot % batch.pixel_count;
+    return batch.first_pixel + slot / batch.sample_count;
 }
 
 // The state of the sample in `slot` before its first ray is traced: filter importance sampling (Ernst, Stamminger
@@ -26,7 +26,7 @@ PathState generate(Batch batch, uint slot) {
     uint x = batch.crop_x + index % batch.crop_width;
     uint y = batch.crop_y + index / batch.crop_width;
     uint pixel = x | (y << 16);
-    uint sample_index = batch.first_sample + slot / batch.pixel_count;
+    uint sample_index = batch.first_sample + slot % batch.sample_count;
     SampleKey key = sample_key(pixel, sample_index, 0u);
     FilterSample pixel_filter = sample_filter(sample_2d(key, DIMENSION_FILTER));
     float film_x = float(x) + 0.5 + pixel_filter.offset.x;

@@ -24,7 +24,8 @@ void shade(PathState incoming, Hit hit) {
     PathState path = incoming;
     bool straight = path.depth == 0u;
     SampleKey key = sample_key(path.pixel, path.sample_index, path.path_id);
-    if (hit.instance == INVALID) {
+    // Where there are groups, what hit nothing has one of its own.
+    if (!(SHADE_GROUPED && SHADE_GROUP != SHADE_GROUP_MISSED) && hit.instance == INVALID) {
         if (!(straight && header.hide_background != 0u)) {
             if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
                 shade_escape(path, key);
@@ -34,6 +35,9 @@ void shade(PathState incoming, Hit hit) {
             uint dither = dither_hash(key, DITHER_BACKGROUND);
             add_contribution(header.film_scale, path.slot, vec4(seen.x, seen.y, seen.z, 0.0), dither);
         }
+        return;
+    }
+    if (SHADE_GROUPED && SHADE_GROUP == SHADE_GROUP_MISSED) {
         return;
     }
     // Light through a medium: Beer's law over the way just travelled (the direction is unit).
@@ -46,6 +50,7 @@ void shade(PathState incoming, Hit hit) {
     Surface surface = surface_at(path.ray, hit);
     uint named = surface.material;
     Material material = material_at(path.ray.direction, hit, key, DIMENSION_LEAF, surface);
+    NAME_MODEL(material)
     if (SCENE_NESTED) {
         if (!meet_interface(path, surface, material)) {
             return;
@@ -66,6 +71,7 @@ void shade(PathState incoming, Hit hit) {
         Material material_there = material;
         if (faceted(flags)) {
             material_there = material_at(-point.wo, point.hit, key, DIMENSION_LEAF, point.surface);
+            NAME_MODEL(material_there)
         }
         shade_local(path, key, point, material_there);
         if (!SCENE_HAS_FACETS || index + 1u >= shading_points(flags)) {

@@ -53,39 +53,45 @@ bool is_refracting(Material material) {
 // Without ranks media do not nest: a ray that leaves a dielectric is outside. Radiance is not scaled by eta^2 (Whitted's model).
 void shade_whitted(PathState path, Surface surface, Material material) {
     vec3 wo = -path.ray.direction;
-    if (!is_refracting(material)) {
-        if (is_hidden_back(surface, material, wo)) {
-            return;
-        }
-        vec3 normal = facing_normal(surface, wo);
-        Spectrum weight = mirror_weight(material, dot3(normal, wo)) * own_weight(material);
-        push_branch(path, surface, mirror_direction(surface, wo), weight, LOBE_MIRROR);
+    bool refracting = is_refracting(material);
+    if (!refracting && is_hidden_back(surface, material, wo)) {
         return;
     }
+    vec3 normal = facing_normal(surface, wo);
     bool entering = dot3(surface.normal_geometric, wo) >= 0.0;
     float eta = entering ? material.eta.x : rcp(material.eta.x);
-    Frame frame = frame_from_normal(facing_normal(surface, wo));
+    Frame frame = frame_from_normal(normal);
     vec3 wo_local = to_local(frame, wo);
     bool thin = material.model == MODEL_THIN_DIELECTRIC;
-    float reflectance = thin ? thin_reflectance(wo_local.z, material.eta.x) : fresnel_dielectric(wo_local.z, eta);
-    push_branch(path, surface, mirror_direction(surface, wo), vec4(reflectance), LOBE_MIRROR);
-    Spectrum weight = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
-    if (thin) {
-        push_branch(path, surface, path.ray.direction, weight, LOBE_REFRACT);
+    float reflectance = 0.0;
+    Spectrum reflected;
+    if (refracting) {
+        reflectance = thin ? thin_reflectance(wo_local.z, material.eta.x) : fresnel_dielectric(wo_local.z, eta);
+        reflected = vec4(reflectance);
+    } else {
+        reflected = mirror_weight(material, dot3(normal, wo)) * own_weight(material);
+    }
+    push_branch(path, surface, mirror_direction(surface, wo), reflected, LOBE_MIRROR);
+    if (!refracting) {
         return;
     }
-    Refraction refraction = refract_local(wo_local, eta);
-    if (refraction.total) {
-        return;
-    }
+    Spectrum refracted = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
     PathState inside = path;
-    inside.eta = entering ? material.eta.x : 1.0;
-    inside.absorption = entering ? material.absorption : vec3(0.0);
-    if (SCENE_NESTED) {
-        inside.interior = cross_interface(path.interior, material, entering);
-        inside.absorption = medium_absorption(inside.interior);
+    vec3 wi = path.ray.direction;
+    if (!thin) {
+        Refraction refraction = refract_local(wo_local, eta);
+        if (refraction.total) {
+            return;
+        }
+        wi = to_world(frame, refraction.wt);
+        inside.eta = entering ? material.eta.x : 1.0;
+        inside.absorption = entering ? material.absorption : vec3(0.0);
+        if (SCENE_NESTED) {
+            inside.interior = cross_interface(path.interior, material, entering);
+            inside.absorption = medium_absorption(inside.interior);
+        }
     }
-    push_branch(inside, surface, to_world(frame, refraction.wt), weight, LOBE_REFRACT);
+    push_branch(inside, surface, wi, refracted, LOBE_REFRACT);
 }
 
 #endif

@@ -1,16 +1,21 @@
-//! Eight-wide hierarchies: obvhs chooses their shape, everything else about them is ours.
+//! Eight-wide hierarchies: obvhs builds their parts, everything else about them is ours.
 //!
-//! obvhs's own boxes are not conservative and its depth has no bound, so only its tree is taken: boxes are quantised
-//! here from the exact bounds of what lies below, and a tree too deep for the traversal stack is replaced by a
-//! median split.
+//! Many boxes are cut into parts first (`split`), obvhs makes a binary tree of each, and all of it becomes one eight-wide tree
+//! (`wide`): parts stay in the cache of the core that works on them. obvhs's own wide boxes are not conservative and its
+//! depth has no bound, so boxes are quantised here, from the exact bounds of what lies below, and a tree too deep for the
+//! traversal stack is replaced by a median split.
 
-use super::wide::widen;
+use super::split::{Cut, cut};
+use super::wide::{Part, widen};
+use super::{BakeError, Watch};
 use crate::layout::{Node, STACK_SIZE};
-use glam::{DVec3, Vec3};
+use glam::{Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::node::Bvh2Node;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::ploc::PlocBuilder;
+use obvhs::ploc::{PlocBuilder, SortPrecision};
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -18,9 +23,24 @@ use std::time::Instant;
 pub const MESH_LEAF: u32 = 3;
 /// Instances in a leaf of the top level: entering one costs more than testing its box.
 pub const TOP_LEAF: u32 = 1;
+/// Primitives of a part at most: its nodes are 4 MB, and what obvhs needs to make them is no more. Larger parts make better
+/// trees of few and unequal triangles (by 2 % for a kitchen of 57,000), smaller ones of many and alike (by 1 % for 4 million).
+const PART: usize = 1 << 16;
+/// How far obvhs looks for a partner of a cluster, and the first passes that look at neighbours only. Those of its preset for
+/// medium quality (14 and 3) take longer and gain nothing: costs are 0 to 1 % higher (kitchen, hairball and terrain).
+const SEARCH_DISTANCE: usize = 6;
+const SEARCH_DEPTH: usize = 1;
 
 /// Smallest and largest raw exponent of a node's grid: 2^-100, so that no distance is subnormal, to 2^100.
 const EXPONENT_RANGE: (i32, i32) = (27, 227);
+
+/// A primitive's box and number (`first_index`), or a node of a binary tree.
+pub type Item = Bvh2Node;
+
+/// The item of primitive `number`.
+pub fn item(bounds: Bounds, number: u32) -> Item {
+    Bvh2Node::new(Aabb::new(bounds.min.into(), bounds.max.into()), 1, number)
+}
 
 /// An axis-aligned box; empty if `min > max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,235 +61,208 @@ impl Bounds {
     pub fn with(self, point: Vec3) -> Self {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
+}
 
-    /// Twice the centre.
-    fn centre(&self) -> DVec3 {
-        self.min.as_dvec3() + self.max.as_dvec3()
+impl From<&Aabb> for Bounds {
+    fn from(aabb: &Aabb) -> Self {
+        Self { min: aabb.min.into(), max: aabb.max.into() }
     }
 }
 
-/// One node without its boxes. Inner children lie side by side from `child_base`, in the order of their slots.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct TreeNode {
-    pub child_base: u32,
-    pub primitive_base: u32,
-    pub inner_mask: u8,
-    /// As `Node::child_meta`.
-    pub meta: [u8; 8],
-}
-
-/// What a slot of a node holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Child {
-    Empty,
-    /// First primitive in the tree's order, and how many.
-    Leaf(u32, u32),
-    /// Index of a later node.
-    Inner(u32),
-}
-
-impl TreeNode {
-    fn child(&self, slot: usize) -> Child {
-        let meta = self.meta[slot];
-        if meta == 0 {
-            Child::Empty
-        } else if self.inner_mask & (1 << slot) != 0 {
-            let before = self.inner_mask & ((1u32 << slot) - 1) as u8;
-            Child::Inner(self.child_base + before.count_ones())
-        } else {
-            Child::Leaf(self.primitive_base + u32::from(meta & 31), (meta >> 5).count_ones())
-        }
-    }
-
-    fn children(&self) -> impl Iterator<Item = Child> + '_ {
-        (0..8).map(|slot| self.child(slot))
-    }
-}
-
-/// The shape of a hierarchy: node 0 is the root, children come after their parents.
+/// A hierarchy, as if it were alone: node 0 is the root, children come after their parents.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
-    nodes: Vec<TreeNode>,
+    pub nodes: Vec<Node>,
     /// Which primitive stands at each place of the traversal order.
     pub order: Vec<u32>,
+    /// Entries of the traversal stack that the worst ray needs.
+    pub stack: u32,
+    /// Around everything; none if there is nothing.
+    pub bounds: Option<Bounds>,
     /// Seconds that its binary tree and the conversion took.
     pub seconds: [f64; 2],
 }
 
 impl Tree {
-    pub fn node_count(&self) -> usize {
-        self.nodes.len()
-    }
-
-    /// A tree of good quality that fits the traversal stack, over `count` primitives, one at least. `box_of`: the box of each,
-    /// finite; asked for again rather than kept.
-    pub fn build(count: usize, box_of: impl Fn(u32) -> Bounds + Sync, leaf: u32) -> Self {
-        let tree = Self::by_surface_area(count, &box_of, leaf);
-        if tree.stack_depth() <= STACK_SIZE {
-            return tree;
+    /// A tree of good quality that fits the traversal stack, over finite boxes. `leaf`: primitives in a leaf, 1 to 3.
+    pub fn build(items: Vec<Item>, leaf: u32, watch: &Watch) -> Result<Self, BakeError> {
+        if items.is_empty() {
+            return Ok(Self::default());
         }
-        let boxes: Vec<Bounds> = (0..count as u32).map(box_of).collect();
-        Self::median_split(&boxes, leaf)
-    }
-
-    /// A tree of good quality, of any depth.
-    fn by_surface_area(count: usize, box_of: impl Fn(u32) -> Bounds + Sync, leaf: u32) -> Self {
         let start = Instant::now();
-        let boxed = |primitive| {
-            let Bounds { min, max } = box_of(primitive);
-            Aabb::new(min.into(), max.into())
-        };
-        let boxes: Vec<Aabb> = (0..count as u32).into_par_iter().map(boxed).collect();
-        let preset = BvhBuildParams::medium_build();
-        // The steps of obvhs's `build_cwbvh` up to the binary tree.
-        let mut binary = PlocBuilder::with_capacity(count).build(
-            preset.ploc_search_distance,
-            &boxes,
-            (0..count as u32).collect(),
-            preset.sort_precision,
-            preset.search_depth_threshold,
-        );
-        drop(boxes);
-        ReinsertionOptimizer::default().run(&mut binary, preset.reinsertion_batch_ratio, None);
+        let (top, parts) = binary(items, leaf, PART, watch)?;
         let binary_s = start.elapsed().as_secs_f64();
-        let (nodes, order) = widen(&binary, leaf);
+        let (mut nodes, mut order, mut stack) = widen(&top, &parts, watch)?;
+        if stack > STACK_SIZE {
+            let items: Vec<Item> = parts.iter().flat_map(Part::leaves).copied().collect();
+            (nodes, order, stack) = median_split(&items, leaf);
+        }
         let wide_s = start.elapsed().as_secs_f64() - binary_s;
-        Self { nodes, order, seconds: [binary_s, wide_s] }
-    }
-
-    /// A tree of the least depth: each node halves its largest part, by the median along its longest axis, until it
-    /// has eight.
-    fn median_split(boxes: &[Bounds], leaf: u32) -> Self {
-        let mut tree =
-            Self { nodes: vec![TreeNode::default()], order: Vec::with_capacity(boxes.len()), seconds: [0.0; 2] };
-        let mut waiting = vec![(0usize, (0..boxes.len() as u32).collect::<Vec<u32>>())];
-        while let Some((index, primitives)) = waiting.pop() {
-            let mut parts = vec![primitives];
-            while parts.len() < 8 {
-                let largest = (0..parts.len()).max_by_key(|&i| parts[i].len()).unwrap_or(0);
-                if parts[largest].len() <= leaf as usize {
-                    break;
-                }
-                let half = halve(&mut parts[largest], boxes);
-                parts.push(half);
-            }
-            let bounds: Vec<Bounds> = parts.iter().map(|part| bounds_of(part, boxes)).collect();
-            let centres: Vec<DVec3> = bounds.iter().map(Bounds::centre).collect();
-            let slots = octant_slots(&centres, bounds.iter().fold(Bounds::EMPTY, |b, &c| b.union(c)).centre());
-            let mut node = TreeNode {
-                child_base: tree.nodes.len() as u32,
-                primitive_base: tree.order.len() as u32,
-                ..TreeNode::default()
-            };
-            for slot in 0..8 {
-                let Some(part) = slots.iter().position(|&s| s == slot) else {
-                    continue;
-                };
-                let part = std::mem::take(&mut parts[part]);
-                if part.len() <= leaf as usize {
-                    let offset = tree.order.len() as u32 - node.primitive_base;
-                    node.meta[slot] = ((1u8 << part.len()) - 1) << 5 | offset as u8;
-                    tree.order.extend(part);
-                } else {
-                    node.inner_mask |= 1 << slot;
-                    node.meta[slot] = 0b0010_0000 | (24 + slot as u8);
-                    waiting.push((tree.nodes.len(), part));
-                    tree.nodes.push(TreeNode::default());
-                }
-            }
-            tree.nodes[index] = node;
-        }
-        tree
-    }
-
-    /// Entries of the traversal stack that the worst ray needs: a child leaves one group behind if it has a sibling
-    /// (some octant visits it first).
-    pub fn stack_depth(&self) -> u32 {
-        let mut need = vec![0u32; self.nodes.len()];
-        for (index, node) in self.nodes.iter().enumerate().rev() {
-            let siblings = u32::from(node.inner_mask.count_ones() > 1);
-            let inner = node.children().filter_map(|child| match child {
-                Child::Inner(child) => Some(siblings + need[child as usize]),
-                Child::Empty | Child::Leaf(..) => None,
-            });
-            need[index] = inner.max().unwrap_or(0);
-        }
-        need.first().copied().unwrap_or(0)
-    }
-
-    /// The nodes as the traversal reads them. Every quantised child box contains the boxes of all primitives below it.
-    /// `node_base`, `primitive_base`: where the tree's nodes and its order begin in the scene's arrays.
-    pub fn pack(&self, box_of: impl Fn(u32) -> Bounds + Sync, node_base: u32, primitive_base: u32) -> Vec<Node> {
-        let leaves = |node: &TreeNode| {
-            std::array::from_fn(|slot| match node.child(slot) {
-                Child::Empty | Child::Inner(_) => Bounds::EMPTY,
-                Child::Leaf(first, count) => {
-                    let inside = &self.order[first as usize..(first + count) as usize];
-                    inside.iter().fold(Bounds::EMPTY, |b, &p| b.union(box_of(p)))
-                }
-            })
-        };
-        let mut child_bounds: Vec<[Bounds; 8]> = self.nodes.par_iter().map(leaves).collect();
-        let mut bounds = vec![Bounds::EMPTY; self.nodes.len()];
-        for (index, node) in self.nodes.iter().enumerate().rev() {
-            for (slot, child) in node.children().enumerate() {
-                if let Child::Inner(child) = child {
-                    child_bounds[index][slot] = bounds[child as usize];
-                }
-            }
-            bounds[index] = child_bounds[index].iter().fold(Bounds::EMPTY, |b, &c| b.union(c));
-        }
-        let pack_one = |(index, node): (usize, &TreeNode)| {
-            pack_node(node, &bounds[index], &child_bounds[index], node_base, primitive_base)
-        };
-        self.nodes.par_iter().enumerate().map(pack_one).collect()
+        let bounds = Some(Bounds::from(top.bounds()));
+        Ok(Self { nodes, order, stack, bounds, seconds: [binary_s, wide_s] })
     }
 }
 
+/// A binary tree, solved for `widen`: its top, and its parts of `part` primitives at most.
+pub(super) fn binary(
+    mut items: Vec<Item>,
+    leaf: u32,
+    part: usize,
+    watch: &Watch,
+) -> Result<(Part, Vec<Part>), BakeError> {
+    let cut = cut(&mut items, part, 0, 0);
+    let mut ranges = Vec::new();
+    let mut nodes = top_nodes(&cut, &mut ranges);
+    let build = |builder: &mut PlocBuilder, range: &std::ops::Range<usize>| {
+        watch.check()?;
+        let part = Part::of_primitives(part_nodes(builder, &items[range.clone()]), leaf);
+        (watch.advance)(range.len() as u64);
+        Ok(part)
+    };
+    let parts = ranges.par_iter().map_init(PlocBuilder::new, build).collect::<Result<Vec<Part>, BakeError>>()?;
+    for index in (0..nodes.len()).rev() {
+        let node = &nodes[index];
+        let first = node.first_index as usize;
+        let around = match node.is_leaf() {
+            true => *parts[first].bounds(),
+            false => nodes[first].aabb().union(nodes[first + 1].aabb()),
+        };
+        nodes[index].set_aabb(around);
+    }
+    Ok((Part::of_parts(nodes, &parts, leaf), parts))
+}
+
+/// The nodes above the parts, without boxes, parents first; leaves are numbers in `ranges`.
+fn top_nodes(cut: &Cut, ranges: &mut Vec<std::ops::Range<usize>>) -> Vec<Item> {
+    let mut nodes = vec![Bvh2Node::default()];
+    let mut waiting = vec![(cut, 0)];
+    while let Some((cut, index)) = waiting.pop() {
+        match cut {
+            Cut::Part(range) => {
+                nodes[index] = Bvh2Node::new(Aabb::INVALID, 1, ranges.len() as u32);
+                ranges.push(range.clone());
+            }
+            Cut::Two(two) => {
+                let first = nodes.len();
+                nodes[index] = Bvh2Node::new(Aabb::INVALID, 0, first as u32);
+                nodes.extend([Bvh2Node::default(); 2]);
+                waiting.extend([(&two[1], first + 1), (&two[0], first)]);
+            }
+        }
+    }
+    nodes
+}
+
+/// The binary tree over `items`, one at least.
+fn part_nodes(builder: &mut PlocBuilder, items: &[Item]) -> Vec<Item> {
+    let around = items.iter().fold(Aabb::INVALID, |all, item| all.union(item.aabb()));
+    builder.current_nodes.clear();
+    builder.current_nodes.extend_from_slice(items);
+    // The steps of obvhs's `build_cwbvh` up to the binary tree.
+    let mut tree = Bvh2::default();
+    builder.build_ploc_from_leaves::<SEARCH_DISTANCE, false>(&mut tree, around, SortPrecision::U64, SEARCH_DEPTH);
+    ReinsertionOptimizer::default().run(&mut tree, BvhBuildParams::medium_build().reinsertion_batch_ratio, None);
+    tree.nodes
+}
+
+/// A tree of the least depth: each node halves its largest part, by the median along its longest axis, until it has eight.
+/// Its nodes, the order of its primitives and the stack that it needs.
+fn median_split(items: &[Item], leaf: u32) -> (Vec<Node>, Vec<u32>, u32) {
+    let (mut nodes, mut order) = (vec![Node::default()], Vec::with_capacity(items.len()));
+    let mut waiting = vec![(0usize, (0..items.len() as u32).collect::<Vec<u32>>())];
+    while let Some((index, inside)) = waiting.pop() {
+        let mut parts = vec![inside];
+        while parts.len() < 8 {
+            let largest = (0..parts.len()).max_by_key(|&i| parts[i].len()).unwrap_or(0);
+            if parts[largest].len() <= leaf as usize {
+                break;
+            }
+            let half = halve(&mut parts[largest], items);
+            parts.push(half);
+        }
+        let around = |part: &Vec<u32>| part.iter().fold(Aabb::INVALID, |all, &i| all.union(items[i as usize].aabb()));
+        let bounds: Vec<Aabb> = parts.iter().map(around).collect();
+        let whole = bounds.iter().fold(Aabb::INVALID, |all, part| all.union(part));
+        let centres: Vec<Vec3A> = bounds.iter().map(|part| part.min + part.max).collect();
+        let (child_base, primitive_base) = (nodes.len() as u32, order.len() as u32);
+        let (mut inner_mask, mut meta, mut boxes) = (0u8, [0u8; 8], [Bounds::EMPTY; 8]);
+        for (slot, part) in octant_slots(&centres, whole.min + whole.max).into_iter().enumerate() {
+            let Some(part) = part else { continue };
+            boxes[slot] = Bounds::from(&bounds[part]);
+            let part = std::mem::take(&mut parts[part]);
+            if part.len() <= leaf as usize {
+                let offset = order.len() as u32 - primitive_base;
+                meta[slot] = ((1u8 << part.len()) - 1) << 5 | offset as u8;
+                order.extend(part.into_iter().map(|i| items[i as usize].first_index));
+            } else {
+                inner_mask |= 1 << slot;
+                meta[slot] = 0b0010_0000 | (24 + slot as u8);
+                waiting.push((nodes.len(), part));
+                nodes.push(Node::default());
+            }
+        }
+        let node = pack_node(&Bounds::from(&whole), &boxes, inner_mask, meta);
+        nodes[index] = Node { child_base, primitive_base, ..node };
+    }
+    let stack = stack_needs(&nodes, vec![0; nodes.len()]);
+    (nodes, order, stack)
+}
+
+/// Entries of the traversal stack that the worst ray below `nodes[0]` needs: a child leaves one group behind if it has a
+/// sibling (some octant visits it first). `known`: the need of nodes that have no children yet.
+pub(super) fn stack_needs(nodes: &[Node], mut known: Vec<u32>) -> u32 {
+    for (index, node) in nodes.iter().enumerate().rev() {
+        let inner = (node.exponents_imask >> 24).count_ones();
+        let children = node.child_base as usize..(node.child_base + inner) as usize;
+        let deepest = known[children].iter().copied().max().map_or(0, |need| need + u32::from(inner > 1));
+        known[index] = known[index].max(deepest);
+    }
+    known.first().copied().unwrap_or(0)
+}
+
 /// Takes the upper half, by the median of the centres along their longest axis, out of `part`.
-fn halve(part: &mut Vec<u32>, boxes: &[Bounds]) -> Vec<u32> {
-    let centre = |p: u32| boxes[p as usize].centre();
-    let (low, high) = part
-        .iter()
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(centre(p)), high.max(centre(p))));
-    let extent = high - low;
-    let axis = if extent.x >= extent.y && extent.x >= extent.z { 0 } else { 1 + usize::from(extent.z > extent.y) };
+fn halve(part: &mut Vec<u32>, items: &[Item]) -> Vec<u32> {
+    let centre = |p: u32| items[p as usize].aabb().min + items[p as usize].aabb().max;
+    let around = part.iter().fold(Aabb::INVALID, |all, &p| all.union(&Aabb::from_point(centre(p))));
+    let axis = around.largest_axis();
     let middle = part.len() / 2;
     part.select_nth_unstable_by(middle, |&a, &b| centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.cmp(&b)));
     part.split_off(middle)
 }
 
-fn bounds_of(part: &[u32], boxes: &[Bounds]) -> Bounds {
-    part.iter().fold(Bounds::EMPTY, |b, &p| b.union(boxes[p as usize]))
-}
-
-/// The slot of each child, 8 at most, such that slot xor octant is a near-to-far order (Ylitie et al. 2017, section 3.2,
-/// greedily): bits 4, 2, 1 of a slot stand for the positive side in x, y, z. `centres`, `middle`: of the children's boxes
-/// and of the box around all, each in the same multiple.
-pub(super) fn octant_slots(centres: &[DVec3], middle: DVec3) -> [usize; 8] {
+/// The child in each slot, such that slot xor octant is a near-to-far order (Ylitie et al. 2017, section 3.2, greedily): bits
+/// 4, 2, 1 of a slot stand for the positive side in x, y, z. `centres`, `middle`: of the children's boxes, 8 at most, and of
+/// the box around all, each in the same multiple.
+pub(super) fn octant_slots(centres: &[Vec3A], middle: Vec3A) -> [Option<usize>; 8] {
     debug_assert!(centres.len() <= 8, "{} children", centres.len());
-    let mut wishes = [[0.0; 8]; 8];
-    for (wishes, &centre) in wishes.iter_mut().zip(centres) {
+    let wish = |child: usize, slot: usize| {
+        let v = centres[child] - middle;
+        let sign = |bit: usize, x: f32| if slot & bit != 0 { x } else { -x };
+        sign(4, v.x) + sign(2, v.y) + sign(1, v.z)
+    };
+    // The free slot that each child wants most, and how much: at first that of its octant.
+    let mut first = [(f32::NEG_INFINITY, 0); 8];
+    for (child, &centre) in centres.iter().enumerate() {
         let v = centre - middle;
-        for (slot, wish) in wishes.iter_mut().enumerate() {
-            let sign = |bit: usize| if slot & bit != 0 { 1.0 } else { -1.0 };
-            *wish = sign(4) * v.x + sign(2) * v.y + sign(1) * v.z;
-        }
+        let slot = usize::from(v.x > 0.0) << 2 | usize::from(v.y > 0.0) << 1 | usize::from(v.z > 0.0);
+        first[child] = (wish(child, slot), slot);
     }
-    let mut slots = [usize::MAX; 8];
-    let mut taken = [false; 8];
-    for _ in centres {
-        let mut best = (f64::NEG_INFINITY, 0, 0);
-        for child in (0..centres.len()).filter(|&child| slots[child] == usize::MAX) {
-            for slot in (0..8).filter(|&slot| !taken[slot]) {
-                if wishes[child][slot] > best.0 {
-                    best = (wishes[child][slot], child, slot);
-                }
+    let mut slots = [None; 8];
+    let mut waiting = (1u32 << centres.len()) - 1;
+    while waiting != 0 {
+        let mut child = waiting.trailing_zeros() as usize;
+        for other in child + 1..centres.len() {
+            child = if waiting & 1 << other != 0 && first[other].0 > first[child].0 { other } else { child };
+        }
+        let taken = first[child].1;
+        slots[taken] = Some(child);
+        waiting &= !(1 << child);
+        for other in (0..centres.len()).filter(|other| waiting & 1 << other != 0) {
+            if first[other].1 == taken {
+                let free = (0..8).filter(|&slot| slots[slot].is_none()).map(|slot| (wish(other, slot), slot));
+                first[other] = free.reduce(|best, next| if next.0 > best.0 { next } else { best }).unwrap_or_default();
             }
         }
-        let (_, child, slot) = best;
-        slots[child] = slot;
-        taken[slot] = true;
     }
     slots
 }
@@ -292,23 +285,27 @@ fn grid_step(raw: u32) -> f64 {
     f64::from(f32::from_bits(raw << 23))
 }
 
-fn pack_node(node: &TreeNode, bounds: &Bounds, children: &[Bounds; 8], node_base: u32, primitive_base: u32) -> Node {
+/// A node with everything but its bases. Every quantised child box contains the box that it is made of; `children`: by slot.
+pub(super) fn pack_node(bounds: &Bounds, children: &[Bounds; 8], inner_mask: u8, meta: [u8; 8]) -> Node {
     let origin = bounds.min;
     let corner = origin.as_dvec3();
     let extent = bounds.max.as_dvec3() - corner;
     let raw = [grid_exponent(extent.x), grid_exponent(extent.y), grid_exponent(extent.z)];
+    // Steps are powers of two, so multiplying by the inverse is exact.
+    let inverse = raw.map(|raw| 1.0 / grid_step(raw));
     let mut planes = [[[0u8; 8]; 2]; 3];
     for (slot, child) in children.iter().enumerate() {
-        if child.min.x > child.max.x {
+        if meta[slot] == 0 {
             continue;
         }
         for axis in 0..3 {
-            let step = grid_step(raw[axis]);
-            let low = ((f64::from(child.min[axis]) - corner[axis]) / step).floor();
-            let high = ((f64::from(child.max[axis]) - corner[axis]) / step).ceil();
+            let low = (f64::from(child.min[axis]) - corner[axis]) * inverse[axis];
+            let high = (f64::from(child.max[axis]) - corner[axis]) * inverse[axis];
             debug_assert!(low >= 0.0 && high <= 255.0, "child {low}..{high} of a node");
+            // Rounded down and up.
+            let below = high as u8;
             planes[axis][0][slot] = low as u8;
-            planes[axis][1][slot] = high as u8;
+            planes[axis][1][slot] = below + u8::from(f64::from(below) < high);
         }
     }
     let words = |bytes: [u8; 8]| {
@@ -317,10 +314,10 @@ fn pack_node(node: &TreeNode, bounds: &Bounds, children: &[Bounds; 8], node_base
     };
     Node {
         origin,
-        exponents_imask: raw[0] | raw[1] << 8 | raw[2] << 16 | u32::from(node.inner_mask) << 24,
-        child_base: node_base + node.child_base,
-        primitive_base: primitive_base + node.primitive_base,
-        child_meta: words(node.meta),
+        exponents_imask: raw[0] | raw[1] << 8 | raw[2] << 16 | u32::from(inner_mask) << 24,
+        child_base: 0,
+        primitive_base: 0,
+        child_meta: words(meta),
         min_x: words(planes[0][0]),
         max_x: words(planes[0][1]),
         min_y: words(planes[1][0]),
@@ -352,11 +349,12 @@ mod tests {
     #[test]
     fn a_tree_too_deep_for_the_stack_is_shallow_after_a_median_split() {
         let boxes = cascade(800, 0.9);
-        let box_of = |index: u32| boxes[index as usize];
-        let deep = Tree::by_surface_area(boxes.len(), box_of, MESH_LEAF);
-        assert!(deep.stack_depth() > STACK_SIZE, "{}", deep.stack_depth());
-        let flat = Tree::build(boxes.len(), box_of, MESH_LEAF);
-        assert!(flat.stack_depth() <= 5, "{}", flat.stack_depth());
+        let items: Vec<Item> = (0..).zip(&boxes).map(|(number, &bounds)| item(bounds, number)).collect();
+        let (top, parts) = binary(items.clone(), MESH_LEAF, PART, &Watch::NONE).expect("nobody aborts");
+        let (_, _, deep) = widen(&top, &parts, &Watch::NONE).expect("nobody aborts");
+        assert!(deep > STACK_SIZE, "{deep}");
+        let flat = Tree::build(items, MESH_LEAF, &Watch::NONE).expect("nobody aborts");
+        assert!(flat.stack <= 5, "{}", flat.stack);
         let mut order = flat.order.clone();
         order.sort_unstable();
         assert_eq!(order, (0..boxes.len() as u32).collect::<Vec<_>>());

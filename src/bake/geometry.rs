@@ -1,7 +1,8 @@
 //! Meshes: faces, vertices, traversal triangles and their hierarchy.
 
-use super::bvh::{Bounds, MESH_LEAF, Tree};
-use crate::layout::{Face, Node, Triangle, Vertex};
+use super::bvh::{Bounds, Item, MESH_LEAF, Tree, item};
+use super::{BakeError, Watch};
+use crate::layout::{Face, INVALID, Triangle, Vertex};
 use crate::scene::{MaterialId, Mesh};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -19,16 +20,13 @@ pub struct BakedMesh {
     pub vertices: Vec<Vertex>,
     /// In traversal order.
     pub triangles: Vec<Triangle>,
-    /// Shape of the hierarchy, and its nodes as if they and the triangles were alone.
+    /// Its hierarchy; the order is that of `triangles` and no longer there.
     pub tree: Tree,
-    pub nodes: Vec<Node>,
-    pub bounds: Option<Bounds>,
     /// Coordinates are stored divided by this power of two, so that the largest is in 1..2 and the strict arithmetic of
     /// `trace` works far from overflow and underflow at any scale. Instances multiply it back, exactly.
     pub unit: f64,
     pub warning: Option<String>,
-    /// Seconds that the nodes took, and all but the hierarchy.
-    pub pack_s: f64,
+    /// Seconds that all but the hierarchy took.
     pub geometry_s: f64,
 }
 
@@ -47,7 +45,8 @@ fn unit_of(largest: f32) -> f64 {
 
 /// Bakes one mesh. `default_material`: of faces that name none. Triangles with corners that are not numbers or without
 /// area are dropped and counted in `warning`.
-pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId) -> BakedMesh {
+pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId, watch: &Watch) -> Result<BakedMesh, BakeError> {
+    watch.check()?;
     let start = Instant::now();
     let finite = |corners: &[u32; 3]| corners.iter().all(|&i| mesh.positions[i as usize].is_finite());
     let used = mesh.triangles.par_iter().filter(|corners| finite(corners)).flatten_iter();
@@ -56,52 +55,38 @@ pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId) -> BakedMesh {
     let mut baked = BakedMesh { unit, ..BakedMesh::default() };
     let positions: Vec<Vec3> = mesh.positions.par_iter().map(|&p| scaled(p, unit)).collect();
     let corners = |primitive: u32| mesh.triangles[primitive as usize].map(|i| positions[i as usize]);
-    let states: Vec<State> = (0..mesh.triangles.len() as u32)
-        .into_par_iter()
-        .map(|primitive| match face_normal(corners(primitive)) {
-            _ if !finite(&mesh.triangles[primitive as usize]) => State::NotFinite,
-            None => State::Flat,
-            Some(_) => State::Kept,
-        })
-        .collect();
-    let of = |state| (0u32..).zip(&states).filter(move |(_, found)| **found == state).map(|(primitive, _)| primitive);
-    let kept: Vec<u32> = of(State::Kept).collect();
-    if kept.len() < states.len() {
-        baked.warning = Some(format!(
-            "mesh \"{}\": dropped {} triangles with coordinates that are not finite and {} without area",
-            mesh.name,
-            of(State::NotFinite).count(),
-            of(State::Flat).count()
-        ));
+    let state = |primitive: u32| match face_normal(corners(primitive)) {
+        _ if !finite(&mesh.triangles[primitive as usize]) => State::NotFinite,
+        None => State::Flat,
+        Some(_) => State::Kept,
+    };
+    let numbers = (0..mesh.triangles.len() as u32).into_par_iter();
+    let boxed = |primitive| match state(primitive) {
+        State::Kept => item(bounds_of(corners(primitive)), primitive),
+        State::NotFinite | State::Flat => item(Bounds::EMPTY, INVALID),
+    };
+    let mut items: Vec<Item> = numbers.clone().map(boxed).collect();
+    let dropped = items.par_iter().filter(|item| item.first_index == INVALID).count();
+    if dropped > 0 {
+        items.retain(|item| item.first_index != INVALID);
+        let not_finite = numbers.filter(|&primitive| state(primitive) == State::NotFinite).count();
+        let counted = [(not_finite, "with coordinates that are not finite"), (dropped - not_finite, "without area")];
+        let told = counted.iter().filter(|(count, _)| *count > 0).map(|(count, reason)| format!("{count} {reason}"));
+        let told = told.collect::<Vec<_>>().join(" and ");
+        baked.warning = Some(format!("mesh \"{}\": dropped triangles: {told}", mesh.name));
     }
     let before = start.elapsed().as_secs_f64();
     // The hierarchy before all that stays: building it takes the most memory.
-    if !kept.is_empty() {
-        let box_of = |index: u32| bounds_of(corners(kept[index as usize]));
-        baked.tree = Tree::build(kept.len(), box_of, MESH_LEAF);
-        let start = Instant::now();
-        baked.nodes = baked.tree.pack(box_of, 0, 0);
-        baked.pack_s = start.elapsed().as_secs_f64();
-    }
+    baked.tree = Tree::build(items, MESH_LEAF, watch)?;
     let start = Instant::now();
-    let triangle = |&index: &u32| {
-        let primitive = kept[index as usize];
+    let triangle = |&primitive: &u32| {
         let [v0, v1, v2] = corners(primitive);
         Triangle { v0, v1, v2, primitive, ..Triangle::default() }
     };
-    baked.triangles = baked.tree.order.par_iter().map(triangle).collect();
-    let boxes = kept.par_iter().map(|&primitive| bounds_of(corners(primitive)));
-    baked.bounds = boxes.reduce_with(Bounds::union);
-    let mut builder = VertexBuilder::new(mesh, &positions);
-    baked.faces.reserve_exact(mesh.triangles.len());
-    for (primitive, &corners) in mesh.triangles.iter().enumerate() {
-        let material = mesh.face_materials.get(primitive).copied().unwrap_or(default_material).0;
-        let [i0, i1, i2] = builder.face(corners);
-        baked.faces.push(Face { i0, i1, i2, material });
-    }
-    baked.vertices = builder.vertices;
+    baked.triangles = std::mem::take(&mut baked.tree.order).par_iter().map(triangle).collect();
+    (baked.faces, baked.vertices) = faces(mesh, &positions, default_material);
     baked.geometry_s = before + start.elapsed().as_secs_f64();
-    baked
+    Ok(baked)
 }
 
 /// What becomes of a triangle.
@@ -138,53 +123,47 @@ fn unit(v: DVec3) -> Option<Vec3> {
     (length > 0.0 && n.is_finite()).then(|| n.as_vec3())
 }
 
-/// Vertices are shared where the mesh has a usable normal, and made per face where it has none.
-struct VertexBuilder<'a> {
-    mesh: &'a Mesh,
-    positions: &'a [Vec3],
-    /// Index of each vertex as written, once it is needed.
-    shared: Vec<Option<u32>>,
-    vertices: Vec<Vertex>,
-}
-
-impl<'a> VertexBuilder<'a> {
-    fn new(mesh: &'a Mesh, positions: &'a [Vec3]) -> Self {
-        Self { mesh, positions, shared: vec![None; positions.len()], vertices: Vec::new() }
-    }
-
-    fn face(&mut self, corners: [u32; 3]) -> [u32; 3] {
-        let mut own = None;
-        corners.map(|corner| {
-            let normal = self.mesh.normals.get(corner as usize).and_then(|n| unit(n.as_dvec3()));
-            match (normal, self.shared[corner as usize]) {
-                (None, _) => {
-                    let of_face = || face_normal(corners.map(|i| self.positions[i as usize])).unwrap_or(Vec3::Z);
-                    let normal = *own.get_or_insert_with(of_face);
-                    self.push(corner, normal)
-                }
-                (Some(_), Some(index)) => index,
-                (Some(normal), None) => {
-                    let index = self.push(corner, normal);
-                    self.shared[corner as usize] = Some(index);
-                    index
-                }
+/// The faces and their vertices, which are shared where the mesh has a usable normal and made for each face where it has none,
+/// in the order in which faces use them.
+fn faces(mesh: &Mesh, positions: &[Vec3], default_material: MaterialId) -> (Vec<Face>, Vec<Vertex>) {
+    /// Of corners that no face has used yet, and of those without a usable normal.
+    const UNUSED: u32 = u32::MAX;
+    const OWN: u32 = u32::MAX - 1;
+    let normal = |corner: u32| mesh.normals.get(corner as usize).and_then(|n| unit(n.as_dvec3()));
+    let corners = (0..positions.len() as u32).into_par_iter();
+    let mut shared: Vec<u32> = corners.map(|c| if normal(c).is_some() { UNUSED } else { OWN }).collect();
+    // Corner and face that each vertex is made from. More than 2^32 of them are refused when the scene is put together.
+    let mut sources: Vec<[u32; 2]> = Vec::with_capacity(positions.len());
+    let mut faces = Vec::with_capacity(mesh.triangles.len());
+    for (face, &corners) in mesh.triangles.iter().enumerate() {
+        let [i0, i1, i2] = corners.map(|corner| {
+            let index = &mut shared[corner as usize];
+            if *index < OWN {
+                return *index;
             }
-        })
-    }
-
-    /// More than 2^32 of them are refused when the scene is put together.
-    fn push(&mut self, corner: u32, normal: Vec3) -> u32 {
-        let at = corner as usize;
-        let uv = self.mesh.uvs.get(at).copied().filter(|uv| uv.is_finite()).unwrap_or_default();
-        let color = self.mesh.colors.get(at).copied().filter(|c| c.is_finite()).unwrap_or(Vec3::ONE);
-        self.vertices.push(Vertex {
-            position: self.positions[at],
-            u: uv.x,
-            normal,
-            v: uv.y,
-            color,
-            ..Vertex::default()
+            let next = sources.len() as u32;
+            if *index == UNUSED {
+                *index = next;
+            }
+            sources.push([corner, face as u32]);
+            next
         });
-        (self.vertices.len() - 1) as u32
+        let material = mesh.face_materials.get(face).copied().unwrap_or(default_material).0;
+        faces.push(Face { i0, i1, i2, material });
     }
+    let vertex = |&[corner, face]: &[u32; 2]| {
+        let at = corner as usize;
+        let of_face = || face_normal(mesh.triangles[face as usize].map(|i| positions[i as usize]));
+        let uv = mesh.uvs.get(at).copied().filter(|uv| uv.is_finite()).unwrap_or_default();
+        Vertex {
+            position: positions[at],
+            u: uv.x,
+            normal: normal(corner).or_else(of_face).unwrap_or(Vec3::Z),
+            v: uv.y,
+            color: mesh.colors.get(at).copied().filter(|c| c.is_finite()).unwrap_or(Vec3::ONE),
+            ..Vertex::default()
+        }
+    };
+    let vertices = sources.par_iter().map(vertex).collect();
+    (faces, vertices)
 }

@@ -18,6 +18,7 @@ mod media;
 mod mip;
 mod model;
 mod scene;
+mod split;
 pub mod srgb;
 mod tabulated;
 mod texture;
@@ -25,7 +26,25 @@ mod wide;
 
 pub use albedo::gaussian_scale;
 pub use data::{BakeTimes, HeapPiece, SceneData};
-pub use scene::bake;
+pub use scene::{bake, bake_watched};
+
+/// Who looks on while a scene is baked.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Whether to give up (`BakeError::Aborted`); asked often.
+    pub abort: &'a (dyn Fn() -> bool + Sync),
+    /// Told of primitives that have been dealt with, each of them twice: in the binary tree and in the wide one.
+    pub advance: &'a (dyn Fn(u64) + Sync),
+}
+
+impl Watch<'_> {
+    /// Nobody.
+    pub const NONE: Watch<'static> = Watch { abort: &|| false, advance: &|_| {} };
+
+    fn check(&self) -> Result<(), BakeError> {
+        if (self.abort)() { Err(BakeError::Aborted) } else { Ok(()) }
+    }
+}
 
 /// Why a scene cannot be baked: exit code 65.
 #[derive(Debug, thiserror::Error)]
@@ -67,4 +86,7 @@ pub enum BakeError {
     /// No hierarchy is shallow enough.
     #[error("the scene's hierarchy needs a stack of {0} entries; at most 32 are possible")]
     Deep(u32),
+    /// As `Watch::abort` wanted.
+    #[error("interrupted before the scene was ready")]
+    Aborted,
 }

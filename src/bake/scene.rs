@@ -1,6 +1,6 @@
 //! The whole scene: numbers its parts, shares what is the same, and fills in the header.
 
-use super::bvh::{Bounds, TOP_LEAF, Tree};
+use super::bvh::{Bounds, Item, TOP_LEAF, Tree, item};
 use super::emitter::{bake_emitters, bake_surroundings};
 use super::filter::filter_table;
 use super::geometry::{BakedMesh, bake_mesh};
@@ -10,7 +10,8 @@ use super::media::rank_media;
 use super::model::{bake_blends, bake_material, casts_shadow};
 use super::srgb::srgb_table;
 use super::texture::{bake_textures, bind_textures};
-use super::{BakeError, SceneData};
+use super::wide::moved;
+use super::{BakeError, SceneData, Watch};
 use crate::layout::{
     Camera, INSTANCE_FLAT, INSTANCE_GOURAUD, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH,
     INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH, KIND_SPHERE, Node, SAMPLER_INDEPENDENT, SAMPLER_SOBOL,
@@ -29,6 +30,11 @@ const FILM_BITS: i32 = 22;
 
 /// Bakes a scene whose indices are valid (`scene::load` guarantees it).
 pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
+    bake_watched(scene, &Watch::NONE)
+}
+
+/// The same while somebody looks on.
+pub fn bake_watched(scene: &Scene, watch: &Watch) -> Result<SceneData, BakeError> {
     let start = Instant::now();
     let mut data = SceneData { header: header(scene)?, ..SceneData::default() };
     bake_tables(&scene.film.filter, &mut data);
@@ -37,19 +43,18 @@ pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
     let default_material = bake_materials(scene, &mut data)?;
     data.lights = scene.lights.iter().map(|light| bake_light(light, &mut data.tables)).collect();
     data.times.materials_s = start.elapsed().as_secs_f64();
-    let mut meshes = bake_meshes(scene, default_material);
+    let mut meshes = bake_meshes(scene, default_material, watch)?;
     for mesh in meshes.iter().flatten() {
         data.times.geometry_s += mesh.geometry_s;
         data.times.binary_s += mesh.tree.seconds[0];
         data.times.wide_s += mesh.tree.seconds[1];
-        data.times.pack_s += mesh.pack_s;
     }
     let placing = Instant::now();
     let mut parts = place_objects(scene, &mut meshes, default_material, &mut data)?;
     parts.meshes = meshes;
     bake_light_sources(scene, &parts, &mut data)?;
     data.times.top_s = placing.elapsed().as_secs_f64();
-    build_hierarchy(parts, &mut data)?;
+    build_hierarchy(parts, &mut data, watch)?;
     data.header.instance_count = data.instances.len() as u32;
     data.header.light_count = data.lights.len() as u32;
     data.header.shadow_rays = shadow_rays(&data);
@@ -151,14 +156,18 @@ fn bake_light_sources(scene: &Scene, parts: &Parts, data: &mut SceneData) -> Res
 }
 
 /// Bakes each mesh that an object uses, once.
-fn bake_meshes(scene: &Scene, default_material: MaterialId) -> Vec<Option<BakedMesh>> {
+fn bake_meshes(
+    scene: &Scene,
+    default_material: MaterialId,
+    watch: &Watch,
+) -> Result<Vec<Option<BakedMesh>>, BakeError> {
     let mut used = vec![false; scene.meshes.len()];
     for object in &scene.objects {
         if let Geometry::Mesh(id) = object.geometry {
             used[id.0 as usize] = true;
         }
     }
-    let one = |(mesh, &used): (&Mesh, &bool)| used.then(|| bake_mesh(mesh, default_material));
+    let one = |(mesh, &used): (&Mesh, &bool)| used.then(|| bake_mesh(mesh, default_material, watch)).transpose();
     scene.meshes.par_iter().zip(&used).map(one).collect()
 }
 
@@ -187,8 +196,10 @@ fn place_objects(
         data.warnings.extend(mesh.warning.clone());
         first_face[id] = data.faces.len() as u32;
         let base = data.vertices.len() as u32;
-        for face in &mut mesh.faces {
-            (face.i0, face.i1, face.i2) = (base + face.i0, base + face.i1, base + face.i2);
+        if base > 0 {
+            mesh.faces.par_iter_mut().for_each(|face| {
+                (face.i0, face.i1, face.i2) = (base + face.i0, base + face.i1, base + face.i2);
+            });
         }
         append(&mut data.faces, std::mem::take(&mut mesh.faces), faces);
         append(&mut data.vertices, std::mem::take(&mut mesh.vertices), vertices);
@@ -199,7 +210,9 @@ fn place_objects(
         let (mesh, unit, bounds) = match object.geometry {
             Geometry::Sphere => (None, 1.0, sphere),
             Geometry::Mesh(id) => match &meshes[id.0 as usize] {
-                Some(BakedMesh { bounds: Some(bounds), unit, .. }) => (Some(id.0 as usize), *unit, *bounds),
+                Some(BakedMesh { tree: Tree { bounds: Some(bounds), .. }, unit, .. }) => {
+                    (Some(id.0 as usize), *unit, *bounds)
+                }
                 // Nothing of it can be hit.
                 _ => continue,
             },
@@ -280,29 +293,28 @@ fn instance_shadow(scene: &Scene, object: &Object) -> (bool, Option<String>) {
     (casts, warning)
 }
 
-/// Appends `more` to `all`, which is to have `total` items in the end. The only part of a scene moves without a copy.
+/// Appends `more` to `all`, which is to have `total` items in the end. The first part of a scene moves without a copy: large
+/// arrays grow in place.
 fn append<T>(all: &mut Vec<T>, mut more: Vec<T>, total: usize) {
-    if all.is_empty() && more.len() == total {
-        *all = more;
-        return;
+    if all.is_empty() {
+        std::mem::swap(all, &mut more);
     }
     all.reserve_exact(total - all.len());
     all.append(&mut more);
 }
 
 /// Builds the top level and lays all hierarchies out in one array.
-fn build_hierarchy(mut parts: Parts, data: &mut SceneData) -> Result<(), BakeError> {
+fn build_hierarchy(mut parts: Parts, data: &mut SceneData, watch: &Watch) -> Result<(), BakeError> {
     data.header.top_margin = top_margin(parts.growth);
     data.header.top_root = INVALID;
     if parts.shown.is_empty() {
         return Ok(());
     }
-    let boxes: Vec<Bounds> = parts.shown.iter().map(|&(_, world)| world).collect();
     let start = Instant::now();
-    let box_of = |index: u32| boxes[index as usize];
-    let top = Tree::build(boxes.len(), box_of, TOP_LEAF);
-    let meshes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.stack_depth());
-    data.stack_depth = meshes.fold(top.stack_depth(), u32::max);
+    let boxes: Vec<Item> = (0..).zip(&parts.shown).map(|(index, &(_, world))| item(world, index)).collect();
+    let top = Tree::build(boxes, TOP_LEAF, watch)?;
+    let meshes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.stack);
+    data.stack_depth = meshes.fold(top.stack, u32::max);
     if data.stack_depth > STACK_SIZE {
         return Err(BakeError::Deep(data.stack_depth));
     }
@@ -311,32 +323,36 @@ fn build_hierarchy(mut parts: Parts, data: &mut SceneData) -> Result<(), BakeErr
     let start = Instant::now();
     let triangles = parts.meshes.iter().flatten().map(|mesh| mesh.triangles.len()).sum();
     check_count("triangles", triangles)?;
-    let nodes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.node_count()).sum::<usize>() + top.node_count();
+    let nodes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.nodes.len()).sum::<usize>() + top.nodes.len();
     check_count("nodes", nodes)?;
-    data.nodes.reserve_exact(nodes);
-    data.header.top_root = 0;
-    data.nodes.extend(top.pack(box_of, 0, 0));
-    data.top_instances = top.order.clone();
     let mut roots = vec![INVALID; parts.meshes.len()];
     for (id, mesh) in parts.meshes.iter_mut().enumerate() {
         let Some(mesh) = mesh.as_mut().filter(|mesh| !mesh.is_empty()) else {
             continue;
         };
-        let (first_node, first_triangle) = (data.nodes.len() as u32, data.triangles.len() as u32);
-        roots[id] = first_node;
-        let moved = |node: Node| Node {
-            child_base: node.child_base + first_node,
-            primitive_base: node.primitive_base + first_triangle,
-            ..node
-        };
-        data.nodes.extend(std::mem::take(&mut mesh.nodes).into_iter().map(moved));
+        let first = (data.nodes.len() as u32, data.triangles.len() as u32);
+        roots[id] = first.0;
+        append(&mut data.nodes, shifted(std::mem::take(&mut mesh.tree.nodes), first), nodes);
         append(&mut data.triangles, std::mem::take(&mut mesh.triangles), triangles);
     }
+    // The top level last, so that the nodes of a large mesh need not make room for it.
+    data.header.top_root = data.nodes.len() as u32;
+    let first = (data.header.top_root, 0);
+    append(&mut data.nodes, shifted(top.nodes, first), nodes);
+    data.top_instances = top.order;
     for (instance, (mesh, _)) in data.instances.iter_mut().zip(&parts.shown) {
         instance.root = mesh.map_or(INVALID, |id| roots[id]);
     }
     data.times.pack_s += start.elapsed().as_secs_f64();
     Ok(())
+}
+
+/// Nodes of a hierarchy whose nodes and primitives begin at `first` in the scene's arrays.
+fn shifted(mut nodes: Vec<Node>, first: (u32, u32)) -> Vec<Node> {
+    if first != (0, 0) {
+        nodes.par_iter_mut().for_each(|node| *node = moved(node, first));
+    }
+    nodes
 }
 
 /// All of the header that does not depend on the arrays.

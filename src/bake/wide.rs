@@ -1,308 +1,374 @@
-//! From binary trees to eight-wide ones, subtrees side by side.
+//! From binary trees to eight-wide ones, parts side by side.
 //!
 //! Source: Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section
 //! 3: C(n, i), the least surface area cost of what lies below node n as a forest of at most i trees, from the leaves up; then
-//! the wide nodes from the root down. Both run on all threads: the tree is cut below a few hundred nodes, what lies below
-//! the cut is solved and written by itself, and the parts are joined. The cut does not change the result.
+//! the wide nodes from the root down. The binary tree comes in parts that hang below a small top (`split`), and each part is
+//! solved and written by itself. Where it was cut does not change the result.
 
-use super::bvh::{TreeNode, octant_slots};
-use glam::{DVec3, Vec3};
-use obvhs::bvh2::Bvh2;
+use super::bvh::{Bounds, Item, octant_slots, pack_node, stack_needs};
+use super::{BakeError, Watch};
+use crate::layout::Node;
+use glam::Vec3A;
 use rayon::prelude::*;
 
 /// Cost of a primitive test over that of a node visit (section 3.2 of the paper).
 const PRIMITIVE_COST: f32 = 0.3;
-/// Parts that the tree is cut into, at least, if it is large enough: many more than threads, since parts differ in size.
-const PARTS: usize = 512;
-/// Trees with fewer nodes are not cut.
-const CUT_LEAST: usize = 4096;
 
-/// What is known of one node of the binary tree; children are numbers in the same array.
+/// What is known of all that lies below a node.
 #[derive(Clone, Copy, Debug, Default)]
-struct Solved {
-    /// Node of the binary tree.
-    id: u32,
-    /// `NONE`, twice, for a primitive.
-    left: u32,
-    right: u32,
-    /// Primitives below; more than a leaf may hold count as one more than that.
-    primitives: u32,
+struct Cost {
     /// C(n, i) for i from 1 to 7.
-    cost: [f32; 7],
+    forest: [f32; 7],
+    /// Primitives; more than a leaf may hold count as one more than that.
+    primitives: u32,
+}
+
+/// How the least cost of an inner node is had.
+#[derive(Clone, Copy, Debug, Default)]
+struct Plan {
     /// How many trees of a forest of i the left child gets, i from 2 to 8; 0: the best forest of i - 1 is as good.
     split: [u8; 7],
     /// Whether all of it is one leaf of a wide node.
     is_leaf: bool,
 }
 
-const NONE: u32 = u32::MAX;
-
-fn half_area(bvh: &Bvh2, id: u32) -> f32 {
-    bvh.nodes[id as usize].aabb().half_area()
+/// A part of the binary tree, or its top: the root at 0, siblings side by side.
+#[derive(Debug, Default)]
+pub struct Part {
+    /// Leaves are primitives (`first_index` their number), in the top parts.
+    nodes: Vec<Item>,
+    /// Of inner nodes, by the place of their children.
+    plans: Vec<Plan>,
+    /// Of the root.
+    cost: Cost,
 }
 
-impl Solved {
-    fn of(bvh: &Bvh2, id: u32, children: Option<(u32, &Solved, u32, &Solved)>, most: u32) -> Self {
-        let area = half_area(bvh, id);
-        let Some((left, l, right, r)) = children else {
-            let cost = [area * PRIMITIVE_COST; 7];
-            return Self { id, left: NONE, right: NONE, primitives: 1, cost, split: [0; 7], is_leaf: true };
-        };
+/// The place of an inner node among `Part::plans`.
+fn pair(node: &Item) -> usize {
+    (node.first_index as usize - 1) / 2
+}
+
+/// The best forest of `TREES` that has a tree of each child: its cost, and how many trees are the left child's.
+#[inline(always)]
+fn distribute<const TREES: usize>(l: &Cost, r: &Cost) -> (f32, u8) {
+    let mut best = (f32::INFINITY, 1);
+    for k in TREES.saturating_sub(7).max(1)..TREES.min(8) {
+        let cost = l.forest[k - 1] + r.forest[TREES - k - 1];
+        best = if cost < best.0 { (cost, k as u8) } else { best };
+    }
+    best
+}
+
+impl Cost {
+    fn of_primitive(node: &Item) -> Self {
+        Self { forest: [node.aabb().half_area() * PRIMITIVE_COST; 7], primitives: 1 }
+    }
+
+    /// Of a node over `l` and `r`.
+    fn join(area: f32, l: &Self, r: &Self, most: u32) -> (Self, Plan) {
         let primitives = (l.primitives + r.primitives).min(most + 1);
-        let mut solved = Self { id, left, right, primitives, ..Self::default() };
-        // The best forest of `trees` that has a tree of each child.
-        let distribute = |trees: usize| {
-            (1..trees)
-                .filter(|k| *k <= 7 && trees - k <= 7)
-                .map(|k| (l.cost[k - 1] + r.cost[trees - k - 1], k as u8))
-                .reduce(|best, other| if other.0 < best.0 { other } else { best })
-                .unwrap_or((f32::INFINITY, 1))
-        };
-        let (inside, split) = distribute(8);
-        solved.split[6] = split;
+        let two = l.forest[0] + r.forest[0];
+        // A node of two primitives is made of them however many trees there may be. They are half of all.
+        let mut forests = [(two, 1), (two, 0), (two, 0), (two, 0), (two, 0), (two, 0), (two, 1)];
+        if l.primitives > 1 || r.primitives > 1 {
+            forests = [
+                distribute::<2>(l, r),
+                distribute::<3>(l, r),
+                distribute::<4>(l, r),
+                distribute::<5>(l, r),
+                distribute::<6>(l, r),
+                distribute::<7>(l, r),
+                distribute::<8>(l, r),
+            ];
+        }
+        let (mut cost, mut plan) = (Self { primitives, ..Self::default() }, Plan::default());
+        let (inside, split) = forests[6];
+        plan.split[6] = split;
         let node = inside + area;
         let leaf = if primitives <= most { area * PRIMITIVE_COST * primitives as f32 } else { f32::INFINITY };
-        solved.is_leaf = leaf < node;
-        solved.cost[0] = leaf.min(node);
-        for trees in 2..=7 {
-            let (cost, split) = distribute(trees);
-            let before = solved.cost[trees - 2];
-            (solved.cost[trees - 1], solved.split[trees - 2]) = if cost < before { (cost, split) } else { (before, 0) };
+        plan.is_leaf = leaf < node;
+        cost.forest[0] = leaf.min(node);
+        for i in 0..6 {
+            let ((least, split), before) = (forests[i], cost.forest[i]);
+            (cost.forest[i + 1], plan.split[i]) = if least < before { (least, split) } else { (before, 0) };
         }
-        solved
+        (cost, plan)
     }
 }
 
-/// Where the tree is cut: nodes, sorted, and the solution below each.
-type Cut<'a> = (&'a [u32], &'a [Vec<Solved>]);
+impl Part {
+    /// A part of primitives. `most`: primitives in a leaf of the wide tree, 1 to 3.
+    pub fn of_primitives(nodes: Vec<Item>, most: u32) -> Self {
+        Self::solve(nodes, Cost::of_primitive, most)
+    }
 
-/// Solves what lies below `root`: parents first, `root` at 0. A node of the cut is not followed; it has its solution.
-fn solve(bvh: &Bvh2, root: u32, (cut, below): Cut, most: u32) -> Vec<Solved> {
-    let fresh = |id| Solved { id, left: NONE, right: NONE, ..Solved::default() };
-    let mut solved = vec![fresh(root)];
-    // Depth first, so that neighbours in space are neighbours here.
-    let mut waiting = vec![0u32];
-    while let Some(index) = waiting.pop() {
-        let id = solved[index as usize].id;
-        let node = &bvh.nodes[id as usize];
-        if !node.is_leaf() && cut.binary_search(&id).is_err() {
-            let left = solved.len() as u32;
-            solved.extend([fresh(node.first_index), fresh(node.first_index + 1)]);
-            waiting.extend([left + 1, left]);
-            (solved[index as usize].left, solved[index as usize].right) = (left, left + 1);
+    /// The top over `parts`.
+    pub fn of_parts(nodes: Vec<Item>, parts: &[Self], most: u32) -> Self {
+        Self::solve(nodes, |leaf| parts[leaf.first_index as usize].cost, most)
+    }
+
+    /// Solves from the leaves up.
+    fn solve(nodes: Vec<Item>, of_leaf: impl Fn(&Item) -> Cost, most: u32) -> Self {
+        // Inner nodes, parents before children, and depth first, so that what is needed has just been made.
+        let mut inner = Vec::with_capacity(nodes.len() / 2);
+        let mut waiting = vec![0u32];
+        while let Some(id) = waiting.pop() {
+            let node = &nodes[id as usize];
+            if !node.is_leaf() {
+                inner.push(id);
+                waiting.extend([node.first_index, node.first_index + 1]);
+            }
         }
+        let mut plans = vec![Plan::default(); inner.len()];
+        let mut costs = vec![Cost::default(); inner.len()];
+        let cost_of = |costs: &[Cost], node: &Item| if node.is_leaf() { of_leaf(node) } else { costs[pair(node)] };
+        for &id in inner.iter().rev() {
+            let node = &nodes[id as usize];
+            let l = cost_of(&costs, &nodes[node.first_index as usize]);
+            let r = cost_of(&costs, &nodes[node.first_index as usize + 1]);
+            let place = pair(node);
+            (costs[place], plans[place]) = Cost::join(node.aabb().half_area(), &l, &r, most);
+        }
+        let cost = cost_of(&costs, &nodes[0]);
+        Self { nodes, plans, cost }
     }
-    for index in (0..solved.len()).rev() {
-        let Solved { id, left, right, .. } = solved[index];
-        solved[index] = match cut.binary_search(&id) {
-            Ok(part) => Solved { left: NONE, right: NONE, ..below[part][0] },
-            Err(_) if left == NONE => Solved::of(bvh, id, None, most),
-            Err(_) => Solved::of(bvh, id, Some((left, &solved[left as usize], right, &solved[right as usize])), most),
-        };
+
+    /// The box around all.
+    pub fn bounds(&self) -> &obvhs::aabb::Aabb {
+        self.nodes[0].aabb()
     }
-    solved
+
+    /// The leaves.
+    pub fn leaves(&self) -> impl Iterator<Item = &Item> {
+        self.nodes.iter().filter(|node| node.is_leaf())
+    }
 }
 
-/// A node of the solution: part and number in it. Part `parts.len() - 1` is the top.
+/// A node of the binary tree: part and number in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Place {
     part: u32,
-    index: u32,
+    node: u32,
 }
 
-/// The solution of the whole tree: what lies below the cut, in its order, then the top.
-struct Solution<'a> {
-    bvh: &'a Bvh2,
-    cut: Vec<u32>,
-    parts: Vec<Vec<Solved>>,
+/// The part that is the top.
+const TOP: u32 = u32::MAX;
+
+/// The solved binary tree.
+struct Whole<'a> {
+    top: &'a Part,
+    parts: &'a [Part],
 }
 
 /// Wide nodes written so far, and their primitives.
 #[derive(Default)]
 struct Written {
-    nodes: Vec<TreeNode>,
+    nodes: Vec<Node>,
     order: Vec<u32>,
+    /// Entries of the traversal stack that the first node needs.
+    stack: u32,
 }
 
-impl Solution<'_> {
-    fn get(&self, place: Place) -> &Solved {
-        &self.parts[place.part as usize][place.index as usize]
+impl Whole<'_> {
+    #[inline]
+    fn part(&self, place: Place) -> &Part {
+        if place.part == TOP { self.top } else { &self.parts[place.part as usize] }
     }
 
-    /// The same node in the part that knows its children.
+    #[inline]
+    fn get(&self, place: Place) -> &Item {
+        &self.part(place).nodes[place.node as usize]
+    }
+
+    /// The node itself; for what hangs below the top the root of the part.
     fn resolve(&self, place: Place) -> Place {
-        let solved = self.get(place);
-        if place.part as usize + 1 < self.parts.len() || solved.left != NONE {
-            return place;
-        }
-        match self.cut.binary_search(&solved.id) {
-            Ok(part) => Place { part: part as u32, index: 0 },
-            Err(_) => place,
-        }
+        let node = self.get(place);
+        if place.part == TOP && node.is_leaf() { Place { part: node.first_index, node: 0 } } else { place }
     }
 
-    fn children(&self, place: Place) -> Option<(Place, Place)> {
-        let Solved { left, right, .. } = *self.get(place);
-        let of = |index| self.resolve(Place { part: place.part, index });
-        (left != NONE).then(|| (of(left), of(right)))
+    #[inline]
+    fn children(&self, place: Place) -> Option<[Place; 2]> {
+        let node = self.get(place);
+        let of = |i| self.resolve(Place { part: place.part, node: node.first_index + i });
+        (!node.is_leaf()).then(|| [of(0), of(1)])
+    }
+
+    #[inline]
+    fn plan(&self, place: Place) -> Option<&Plan> {
+        let node = self.get(place);
+        (!node.is_leaf()).then(|| &self.part(place).plans[pair(node)])
     }
 
     /// The roots of the best forest of at most `trees` trees below `place`.
     fn forest(&self, place: Place, trees: usize, roots: &mut Vec<Place>) {
-        let split = if trees > 1 { usize::from(self.get(place).split[trees - 2]) } else { 0 };
-        match self.children(place) {
-            Some((left, right)) if split > 0 => {
+        let plan = self.plan(place).filter(|_| trees > 1);
+        // The best forest of fewer trees may be as good.
+        let best = plan.and_then(|plan| (2..=trees).rev().find(|i| plan.split[i - 2] > 0));
+        match (best, plan, self.children(place)) {
+            (Some(best), Some(plan), Some([left, right])) => {
+                let split = usize::from(plan.split[best - 2]);
                 self.forest(left, split, roots);
-                self.forest(right, trees - split, roots);
+                self.forest(right, best - split, roots);
             }
-            Some(_) if trees > 1 => self.forest(place, trees - 1, roots),
             _ => roots.push(place),
         }
-    }
-
-    fn centre(&self, place: Place) -> DVec3 {
-        let aabb = self.bvh.nodes[self.get(place).id as usize].aabb();
-        Vec3::from(aabb.min).as_dvec3() + Vec3::from(aabb.max).as_dvec3()
     }
 
     /// Appends the primitives below `place`.
     fn primitives(&self, place: Place, order: &mut Vec<u32>) {
         match self.children(place) {
-            Some((left, right)) => {
+            Some([left, right]) => {
                 self.primitives(left, order);
                 self.primitives(right, order);
             }
-            None => {
-                let node = &self.bvh.nodes[self.get(place).id as usize];
-                order.push(self.bvh.primitive_indices[node.first_index as usize]);
-            }
+            None => order.push(self.get(place).first_index),
         }
     }
 
     /// Writes the wide node of `root` and all below it, but for those that `put_off` wants: of these the node's place and
     /// its number are returned, and nothing is written there.
     fn write(&self, root: Place, put_off: impl Fn(Place) -> bool) -> (Written, Vec<(Place, u32)>) {
-        let mut out = Written { nodes: vec![TreeNode::default()], order: Vec::new() };
+        let mut out = Written { nodes: vec![Node::default()], ..Written::default() };
         let (mut waiting, mut later) = (vec![(root, 0u32)], Vec::new());
         let mut roots = Vec::with_capacity(8);
         while let Some((place, number)) = waiting.pop() {
             roots.clear();
-            match self.children(place) {
-                Some(_) => self.forest(place, 8, &mut roots),
-                None => roots.push(place),
+            self.forest(place, 8, &mut roots);
+            let around = self.get(place).aabb();
+            let mut centres = [Vec3A::ZERO; 8];
+            for (centre, &root) in centres.iter_mut().zip(&roots) {
+                *centre = self.get(root).aabb().min + self.get(root).aabb().max;
             }
-            let centres: Vec<DVec3> = roots.iter().map(|&root| self.centre(root)).collect();
-            let slots = octant_slots(&centres, self.centre(place));
-            let mut node = TreeNode {
-                child_base: out.nodes.len() as u32,
-                primitive_base: out.order.len() as u32,
-                ..TreeNode::default()
-            };
-            for slot in 0..8 {
-                let Some(child) = slots[..roots.len()].iter().position(|&s| s == slot) else { continue };
-                let child = roots[child];
-                if self.get(child).is_leaf {
-                    let offset = out.order.len() as u32 - node.primitive_base;
+            let children = octant_slots(&centres[..roots.len()], around.min + around.max);
+            let (child_base, primitive_base) = (out.nodes.len() as u32, out.order.len() as u32);
+            let (mut inner_mask, mut meta, mut boxes) = (0u8, [0u8; 8], [Bounds::EMPTY; 8]);
+            for (slot, child) in children.into_iter().enumerate() {
+                let Some(&child) = child.and_then(|child| roots.get(child)) else { continue };
+                boxes[slot] = Bounds::from(self.get(child).aabb());
+                if self.plan(child).is_none_or(|plan| plan.is_leaf) {
+                    let offset = out.order.len() as u32 - primitive_base;
                     self.primitives(child, &mut out.order);
-                    let count = out.order.len() as u32 - node.primitive_base - offset;
-                    node.meta[slot] = ((1u8 << count) - 1) << 5 | offset as u8;
+                    let count = out.order.len() as u32 - primitive_base - offset;
+                    meta[slot] = ((1u8 << count) - 1) << 5 | offset as u8;
                     continue;
                 }
-                node.inner_mask |= 1 << slot;
-                node.meta[slot] = 0b0010_0000 | (24 + slot as u8);
+                inner_mask |= 1 << slot;
+                meta[slot] = 0b0010_0000 | (24 + slot as u8);
                 let number = out.nodes.len() as u32;
-                out.nodes.push(TreeNode::default());
+                out.nodes.push(Node::default());
                 if put_off(child) { later.push((child, number)) } else { waiting.push((child, number)) }
             }
+            let node =
+                Node { child_base, primitive_base, ..pack_node(&Bounds::from(around), &boxes, inner_mask, meta) };
             out.nodes[number as usize] = node;
         }
         (out, later)
     }
 }
 
-/// The eight-wide tree of least cost over a binary one: its nodes, children after parents, and the order of primitives.
-/// `bvh` has one primitive a leaf and one at least; `most`: primitives in a leaf of the result, 1 to 3.
-pub fn widen(bvh: &Bvh2, most: u32) -> (Vec<TreeNode>, Vec<u32>) {
-    let cut = cut(bvh);
-    let mut parts: Vec<Vec<Solved>> = cut.par_iter().map(|&root| solve(bvh, root, (&[], &[]), most)).collect();
-    parts.push(solve(bvh, 0, (&cut, &parts), most));
-    let solution = Solution { bvh, cut, parts };
-    let last = solution.parts.len() as u32 - 1;
-    let root = solution.resolve(Place { part: last, index: 0 });
-    let (mut whole, later) = solution.write(root, |place| place.part != last);
-    let below: Vec<Written> = later.par_iter().map(|&(place, _)| solution.write(place, |_| false).0).collect();
-    for ((_, number), part) in later.into_iter().zip(below) {
-        // A part's root has its place already; the others follow what is there, one number earlier.
-        let (nodes, order) = (whole.nodes.len() as u32, whole.order.len() as u32);
-        let moved = |node: &TreeNode| TreeNode {
-            child_base: node.child_base + nodes - 1,
-            primitive_base: node.primitive_base + order,
-            ..*node
-        };
-        let mut moved = part.nodes.iter().map(moved);
-        whole.nodes[number as usize] = moved.next().expect("a part has a root");
-        whole.nodes.extend(moved);
-        whole.order.extend(part.order);
+/// The eight-wide tree of least cost over a binary one: its nodes, children after parents, the order of primitives, and the
+/// entries that the traversal stack needs.
+pub fn widen(top: &Part, parts: &[Part], watch: &Watch) -> Result<(Vec<Node>, Vec<u32>, u32), BakeError> {
+    let whole = Whole { top, parts };
+    let root = whole.resolve(Place { part: TOP, node: 0 });
+    let (mut first, later) = whole.write(root, |place| place.part != TOP);
+    let write = |&(place, _): &(Place, u32)| {
+        watch.check()?;
+        let (mut part, _) = whole.write(place, |_| false);
+        part.stack = stack_needs(&part.nodes, vec![0; part.nodes.len()]);
+        (watch.advance)(part.order.len() as u64);
+        Ok(part)
+    };
+    let below = later.par_iter().map(write).collect::<Result<Vec<Written>, BakeError>>()?;
+    // A part's root has its place already; the others follow what is there, one number earlier.
+    let node_count = first.nodes.len() + below.iter().map(|part| part.nodes.len() - 1).sum::<usize>();
+    let order_count = first.order.len() + below.iter().map(|part| part.order.len()).sum::<usize>();
+    let mut needs = vec![0; first.nodes.len()];
+    later.iter().zip(&below).for_each(|(&(_, number), part)| needs[number as usize] = part.stack);
+    let stack = stack_needs(&first.nodes, needs);
+    let (mut nodes, mut order) = (vec![Node::default(); node_count], vec![0u32; order_count]);
+    let (mut free_nodes, mut free_order) = (&mut nodes[first.nodes.len()..], &mut order[first.order.len()..]);
+    let (mut next_node, mut next_place) = (first.nodes.len() as u32, first.order.len() as u32);
+    let mut jobs = Vec::with_capacity(below.len());
+    for (&(_, number), part) in later.iter().zip(below) {
+        let shift = (next_node - 1, next_place);
+        first.nodes[number as usize] = moved(&part.nodes[0], shift);
+        let (node_slice, order_slice);
+        (node_slice, free_nodes) = free_nodes.split_at_mut(part.nodes.len() - 1);
+        (order_slice, free_order) = free_order.split_at_mut(part.order.len());
+        (next_node, next_place) = (next_node + node_slice.len() as u32, next_place + order_slice.len() as u32);
+        jobs.push((node_slice, order_slice, part, shift));
     }
-    (whole.nodes, whole.order)
+    jobs.into_par_iter().for_each(|(nodes, order, part, shift)| {
+        nodes.iter_mut().zip(&part.nodes[1..]).for_each(|(to, from)| *to = moved(from, shift));
+        order.copy_from_slice(&part.order);
+    });
+    nodes[..first.nodes.len()].copy_from_slice(&first.nodes);
+    order[..first.order.len()].copy_from_slice(&first.order);
+    Ok((nodes, order, stack))
 }
 
-/// Nodes, sorted, of which each path from the root to a leaf has one at most: the tree breadth first until there are enough.
-fn cut(bvh: &Bvh2) -> Vec<u32> {
-    if bvh.nodes.len() < CUT_LEAST {
-        return Vec::new();
-    }
-    let mut front = vec![0u32];
-    while front.len() < PARTS {
-        let inner = |id: &u32| !bvh.nodes[*id as usize].is_leaf();
-        let next: Vec<u32> = front
-            .iter()
-            .filter(|id| inner(id))
-            .flat_map(|&id| [bvh.nodes[id as usize].first_index, bvh.nodes[id as usize].first_index + 1])
-            .collect();
-        if next.is_empty() {
-            break;
-        }
-        front = next;
-    }
-    // A primitive is no part.
-    front.retain(|&id| !bvh.nodes[id as usize].is_leaf());
-    front.sort_unstable();
-    front
+/// The same node where nodes and primitives begin later.
+pub fn moved(node: &Node, (nodes, primitives): (u32, u32)) -> Node {
+    Node { child_base: node.child_base + nodes, primitive_base: node.primitive_base + primitives, ..*node }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bake::bvh::{binary, item};
+    use glam::Vec3;
     use obvhs::aabb::Aabb;
+    use obvhs::bvh2::Bvh2;
     use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
-    use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
     /// Small boxes anywhere in a cube, from a linear congruential generator.
-    fn boxes(count: u32) -> Vec<Aabb> {
+    fn items(count: u32) -> Vec<Item> {
         let mut state = 1u32;
         let mut random = || {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (state >> 8) as f32 / 16_777_216.0
         };
         let mut corner = || Vec3::new(random(), random(), random());
-        let mut make = || {
+        let mut make = |number| {
             let (low, size) = (corner(), corner());
-            Aabb::new(low.into(), (low + size * 0.05).into())
+            item(Bounds { min: low, max: low + size * 0.05 }, number)
         };
-        (0..count).map(|_| make()).collect()
+        (0..count).map(&mut make).collect()
     }
 
-    fn binary(boxes: &[Aabb]) -> Bvh2 {
-        let numbers = (0..boxes.len() as u32).collect();
-        PlocBuilder::with_capacity(boxes.len()).build(PlocSearchDistance::Low, boxes, numbers, SortPrecision::U64, 0)
+    /// The binary tree in one piece.
+    fn joined(top: &Part, parts: &[Part], count: u32) -> Bvh2 {
+        let mut nodes = top.nodes.clone();
+        for index in 0..top.nodes.len() {
+            if !top.nodes[index].is_leaf() {
+                continue;
+            }
+            let base = nodes.len() as u32 - 1;
+            let part = parts[top.nodes[index].first_index as usize].nodes.iter().map(|node| {
+                let shift = if node.is_leaf() { 0 } else { base };
+                Item::new(*node.aabb(), node.prim_count, node.first_index + shift)
+            });
+            let mut part = part;
+            nodes[index] = part.next().expect("a part has a root");
+            nodes.extend(part);
+        }
+        Bvh2 { nodes, primitive_indices: (0..count).collect(), ..Bvh2::default() }
     }
 
-    /// Cost of a wide tree: what `Solved::cost` adds up. Every primitive must stand in one place.
-    fn cost(nodes: &[TreeNode], order: &[u32], boxes: &[Aabb]) -> f64 {
+    /// A node of a wide tree without its boxes.
+    struct Bare {
+        child_base: u32,
+        primitive_base: u32,
+        inner_mask: u8,
+        meta: [u8; 8],
+    }
+
+    /// Cost of a wide tree: what `Cost::forest` adds up. Every primitive must stand in one place.
+    fn cost(nodes: &[Bare], order: &[u32], items: &[Item]) -> f64 {
         let mut sorted = order.to_vec();
         sorted.sort_unstable();
-        assert_eq!(sorted, (0..boxes.len() as u32).collect::<Vec<_>>());
+        assert_eq!(sorted, (0..items.len() as u32).collect::<Vec<_>>());
         let mut around = vec![Aabb::empty(); nodes.len()];
         let mut cost = 0.0;
         for (index, node) in nodes.iter().enumerate().rev() {
@@ -317,7 +383,7 @@ mod tests {
                     let first = node.primitive_base as usize + usize::from(meta & 31);
                     let count = (meta >> 5).count_ones() as usize;
                     let leaf = order[first..first + count].iter();
-                    let whole = leaf.fold(Aabb::empty(), |whole, &p| whole.union(&boxes[p as usize]));
+                    let whole = leaf.fold(Aabb::empty(), |whole, &p| whole.union(items[p as usize].aabb()));
                     (whole, f64::from(PRIMITIVE_COST) * count as f64)
                 } else {
                     continue;
@@ -330,22 +396,34 @@ mod tests {
     }
 
     #[test]
-    fn the_cut_tree_costs_what_the_builders_own_conversion_costs() {
-        for (count, most) in [(1, 3), (2, 3), (3, 1), (9, 3), (100, 1), (1000, 3), (20_000, 3), (20_000, 1)] {
-            let boxes = boxes(count);
-            let bvh = binary(&boxes);
-            assert_eq!(cut(&bvh).is_empty(), count < 3000, "{count} primitives");
-            let (nodes, order) = widen(&bvh, most);
-            let theirs = bvh2_to_cwbvh(&bvh, most, true, false);
-            let node = |n: &obvhs::cwbvh::node::CwBvhNode| TreeNode {
+    fn a_tree_in_parts_costs_what_the_builders_own_conversion_of_the_whole_costs() {
+        let cases = [(1, 3, 9), (2, 3, 9), (3, 1, 9), (9, 3, 4), (100, 1, 200), (1000, 3, 70), (20_000, 3, 500)];
+        for (count, most, part) in cases {
+            let items = items(count);
+            let (top, parts) = binary(items.clone(), most, part, &Watch::NONE).expect("nobody aborts");
+            assert!(parts.iter().all(|found| found.leaves().count() <= part), "{count} primitives");
+            assert_eq!(parts.len() > 1, count as usize > part, "{count} primitives");
+            let (nodes, order, _) = widen(&top, &parts, &Watch::NONE).expect("nobody aborts");
+            let bytes = |[low, high]: [u32; 2]| (u64::from(low) | u64::from(high) << 32).to_le_bytes();
+            let ours: Vec<Bare> = nodes
+                .iter()
+                .map(|n| Bare {
+                    child_base: n.child_base,
+                    primitive_base: n.primitive_base,
+                    inner_mask: (n.exponents_imask >> 24) as u8,
+                    meta: bytes(n.child_meta),
+                })
+                .collect();
+            let theirs = bvh2_to_cwbvh(&joined(&top, &parts, count), most, true, false);
+            let bare = |n: &obvhs::cwbvh::node::CwBvhNode| Bare {
                 child_base: n.child_base_idx,
                 primitive_base: n.primitive_base_idx,
                 inner_mask: n.imask,
                 meta: n.child_meta,
             };
-            let nodes_of_theirs: Vec<TreeNode> = theirs.nodes.iter().map(node).collect();
+            let nodes_of_theirs: Vec<Bare> = theirs.nodes.iter().map(bare).collect();
             let (ours, theirs) =
-                (cost(&nodes, &order, &boxes), cost(&nodes_of_theirs, &theirs.primitive_indices, &boxes));
+                (cost(&ours, &order, &items), cost(&nodes_of_theirs, &theirs.primitive_indices, &items));
             // The same optimum; sums in single precision break ties differently.
             assert!((ours - theirs).abs() < 1e-4 * theirs, "{count} primitives, {most} a leaf: {ours} and {theirs}");
         }

@@ -53,6 +53,9 @@ pub struct SceneReport {
     pub bake: BakeTimes,
     /// Most bytes of memory the program has had by the end of baking; none where the system does not tell.
     pub peak_bytes: Option<u64>,
+    /// Most bytes that baking added to what the program had before, what it made included.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bake_bytes: Option<u64>,
     /// Seconds before the first ray, by device.
     pub setup: Vec<SetupOn>,
     pub rays: Vec<RayReport>,
@@ -154,9 +157,25 @@ impl SceneReport {
     }
 }
 
-/// Most bytes of memory this program has had; none where the system does not tell (Linux does).
-pub fn peak_bytes() -> Option<u64> {
+/// Bytes of memory that this program has and the most it has had; none where the system does not tell (Linux does).
+fn memory() -> Option<[u64; 2]> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kib| kib * 1024)
+    let of = |name| {
+        let line = status.lines().find_map(|line| line.strip_prefix(name))?;
+        line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kib| kib * 1024)
+    };
+    Some([of("VmRSS:")?, of("VmHWM:")?])
+}
+
+/// What `work` gives, the most bytes of memory that this program has had by its end, and the most that `work` added to what
+/// the program had before it.
+pub fn with_memory<T>(work: impl FnOnce() -> T) -> (T, [Option<u64>; 2]) {
+    // From here on the most is counted anew, if the system lets us; if not, it is no less.
+    let before = memory();
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+    let done = work();
+    let after = memory();
+    let peak = before.zip(after).map(|([_, before], [_, after])| before.max(after));
+    let added = before.zip(after).map(|([had, _], [_, most])| most.saturating_sub(had));
+    (done, [peak, added])
 }

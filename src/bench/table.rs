@@ -131,10 +131,13 @@ fn head(report: &SceneReport) -> String {
         ),
     );
     let peak = report.peak_bytes.map_or(String::new(), |bytes| format!("; peak {}", megabytes(bytes)));
+    let arrays = size.node_bytes + size.triangle_bytes + size.data_bytes;
+    let baking = |bytes| format!("; baking {} ({:.2} times that)", megabytes(bytes), bytes as f64 / arrays as f64);
+    let baking = report.bake_bytes.map_or(String::new(), baking);
     line(
         &mut text,
         format_args!(
-            "  memory: nodes {}, triangles {}, other {}{peak}",
+            "  memory: nodes {}, triangles {}, other {}{baking}{peak}",
             megabytes(size.node_bytes),
             megabytes(size.triangle_bytes),
             megabytes(size.data_bytes)
@@ -241,6 +244,7 @@ mod tests {
             load_s: 0.0,
             bake: Default::default(),
             peak_bytes: None,
+            bake_bytes: None,
             setup: Vec::new(),
             rays,
             images: Vec::new(),

@@ -10,7 +10,7 @@ use crate::bench::export::export;
 use crate::bench::hierarchy::size_of_scene;
 use crate::bench::image::{self, frame_of};
 use crate::bench::rays::{RayKind, RaySet, make_rays};
-use crate::bench::report::{Backend, ImageReport, RayReport, Report, SCHEMA, SceneReport, SetupOn, peak_bytes};
+use crate::bench::report::{Backend, ImageReport, RayReport, Report, SCHEMA, SceneReport, SetupOn, with_memory};
 use crate::bench::run::{Plan, measure};
 use crate::bench::table::Table;
 use crate::bench::tracer::{CpuTracer, Tracer, VulkanTracer};
@@ -215,7 +215,8 @@ impl BenchArgs {
         let load_s = start.elapsed().as_secs_f64();
         let frame = frame_of(scene.film.width, scene.film.height, self.rays);
         (scene.film.width, scene.film.height) = (frame.width, frame.height);
-        let data = bake_scene(&scene)?;
+        let (data, [peak_bytes, bake_bytes]) = with_memory(|| bake_scene(&scene));
+        let data = data?;
         let mut report = SceneReport {
             scene: name.clone(),
             width: frame.width,
@@ -224,7 +225,8 @@ impl BenchArgs {
             size: size_of_scene(&data),
             load_s,
             bake: data.times,
-            peak_bytes: peak_bytes(),
+            peak_bytes,
+            bake_bytes,
             setup: Vec::new(),
             rays: Vec::new(),
             images: Vec::new(),

@@ -23,18 +23,19 @@ pub struct DevicesArgs {
     /// Print everything that is known as JSON.
     #[arg(long)]
     json: bool,
-    /// Ask the drivers in this process and print JSON: a driver may abort, so the visible command runs this as a child.
-    #[arg(long, hide = true)]
-    probe: bool,
+    /// Ask the drivers in this process and print JSON: all for their devices, or one whether it is exact. A driver may
+    /// abort, so the visible command runs a child for each question.
+    #[arg(long, hide = true, value_name = "INDEX")]
+    probe: Option<Option<usize>>,
 }
 
 /// Lists the Vulkan devices and the CPU backend.
 pub fn run(args: &DevicesArgs) -> anyhow::Result<ExitCode> {
-    if args.probe {
-        writeln!(io::stdout().lock(), "{}", probe())?;
+    if let Some(question) = args.probe {
+        writeln!(io::stdout().lock(), "{}", question.map_or_else(list, probe))?;
         return Ok(ExitCode::SUCCESS);
     }
-    let answer = ask_child()?;
+    let answer = ask(ask_child)?;
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let mut out = io::stdout().lock();
     if args.json {
@@ -49,43 +50,70 @@ pub fn run(args: &DevicesArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Everything the drivers say, or why there is nothing.
-fn probe() -> Value {
-    let found = Instance::new(false).and_then(|instance| Ok((instance.devices()?, instance)));
-    match found {
-        Ok((devices, instance)) => {
-            let described: Vec<_> = devices.iter().map(|info| describe(&instance, info)).collect();
-            json!({ "devices": described, "problem": null })
+/// The drivers and their devices, or why there is nothing.
+fn found() -> Result<(Arc<Instance>, Vec<DeviceInfo>), RenderError> {
+    let instance = Instance::new(false)?;
+    let devices = instance.devices()?;
+    Ok((instance, devices))
+}
+
+/// What the drivers say of their devices.
+fn list() -> Value {
+    match found() {
+        Ok((_, devices)) => {
+            let described = devices.iter().map(|info| {
+                let mut value = json!(info);
+                value["usable"] = json!(info.is_usable());
+                value
+            });
+            json!({ "devices": described.collect::<Vec<_>>(), "problem": null })
         }
         Err(error) => json!({ "devices": [], "problem": error.to_string() }),
     }
 }
 
-/// What the driver says of a device, and whether it is exact: null with a reason where that cannot be told.
-fn describe(instance: &Arc<Instance>, info: &DeviceInfo) -> Value {
-    let mut value = json!(info);
-    value["usable"] = json!(info.is_usable());
-    let opened = || Device::on(instance.clone(), info.clone()).map_err(RenderError::from);
-    let probed = info.is_usable().then(|| opened().and_then(|mut device| probe_exactness(&mut device, &Cache::user())));
-    let (exact, inexact, problem) = match probed {
-        None => (None, None, None),
-        Some(Ok(probed)) => match probed.exactness {
-            Exactness::Exact => (Some(true), None, None),
-            Exactness::Inexact(mismatch) => (Some(false), Some(mismatch), None),
-        },
-        Some(Err(error)) => (None, None, Some(error.to_string())),
-    };
-    value["exact"] = json!(exact);
-    value["inexact"] = json!(inexact);
-    value["exact_problem"] = json!(problem);
-    value
+/// Whether a device is exact: null with a reason where that cannot be told.
+fn probe(index: usize) -> Value {
+    let asked = found().and_then(|(instance, devices)| {
+        let gone = || RenderError::NoDevice("it is no longer there".to_owned());
+        let info = devices.into_iter().find(|info| info.index == index).ok_or_else(gone)?;
+        probe_exactness(&mut Device::on(instance, info)?, &Cache::user())
+    });
+    match asked.map(|probed| probed.exactness) {
+        Ok(Exactness::Exact) => exactness(Some(true), None, None),
+        Ok(Exactness::Inexact(mismatch)) => exactness(Some(false), Some(mismatch), None),
+        Err(error) => exactness(None, None, Some(error.to_string())),
+    }
 }
 
-/// Runs the probe in a child process.
-fn ask_child() -> anyhow::Result<Value> {
+fn exactness(exact: Option<bool>, inexact: Option<Mismatch>, problem: Option<String>) -> Value {
+    json!({ "exact": exact, "inexact": inexact, "exact_problem": problem })
+}
+
+/// The list of devices, each that can be used with its exactness, from `child`, which asks one question.
+fn ask(child: impl Fn(Option<usize>) -> anyhow::Result<Output>) -> anyhow::Result<Value> {
+    let mut answer = understand(&child(None)?).unwrap_or_else(|crash| json!({ "devices": [], "problem": crash }));
+    for device in answer["devices"].as_array_mut().into_iter().flatten() {
+        let index = device["index"].as_u64().filter(|_| device["usable"] == true);
+        let found = match index {
+            Some(index) => {
+                understand(&child(Some(index as usize))?).unwrap_or_else(|crash| exactness(None, None, Some(crash)))
+            }
+            None => exactness(None, None, None),
+        };
+        for (key, value) in found.as_object().into_iter().flatten() {
+            device[key] = value.clone();
+        }
+    }
+    Ok(answer)
+}
+
+/// Asks all drivers for their devices, or about one device, in a child process.
+fn ask_child(device: Option<usize>) -> anyhow::Result<Output> {
     let program = std::env::current_exe().context("cannot find this program's own file")?;
     let output = Command::new(program)
         .args(["devices", "--probe"])
+        .args(device.map(|index| index.to_string()))
         .stdin(Stdio::null())
         .output()
         .context("cannot start the process that asks the Vulkan drivers")?;
@@ -93,21 +121,18 @@ fn ask_child() -> anyhow::Result<Value> {
     for line in noise.lines() {
         log::info!("while asking the drivers: {line}");
     }
-    Ok(understand(&output))
+    Ok(output)
 }
 
-/// The probe's answer; a process that died is an answer as well.
-fn understand(output: &Output) -> Value {
+/// A child's answer, or that it died before it could give one.
+fn understand(output: &Output) -> Result<Value, String> {
     let answer = serde_json::from_slice(&output.stdout).ok().filter(|_| output.status.success());
-    answer.unwrap_or_else(|| {
-        json!({
-            "devices": [],
-            "problem": format!(
-                "a Vulkan driver brought down the process that asked it ({}); -v shows what it said, and VK_DRIVER_FILES \
-                 chooses drivers",
-                output.status
-            ),
-        })
+    answer.ok_or_else(|| {
+        format!(
+            "a Vulkan driver crashed the process that asked it ({}); -v shows what it said, and VK_DRIVER_FILES chooses \
+             drivers",
+            output.status
+        )
     })
 }
 
@@ -136,7 +161,7 @@ struct Row {
 const SHOWN_ARGUMENTS: usize = 3;
 
 impl Row {
-    /// "yes", "no (operation, input)" or "-".
+    /// "yes", "no (operation, input)", "unknown" where that could not be found out, or "-".
     fn exactness(&self) -> String {
         match (self.exact, &self.inexact) {
             (Some(true), _) => "yes".to_owned(),
@@ -149,6 +174,7 @@ impl Row {
                 format!("no ({}, {})", mismatch.twin, input.join(" "))
             }
             (Some(false), None) => "no".to_owned(),
+            (None, _) if self.exact_problem.is_some() => "unknown".to_owned(),
             (None, _) => "-".to_owned(),
         }
     }
@@ -228,13 +254,44 @@ device 1 cannot be used: Vulkan 1.1.0 only
     }
 
     #[cfg(unix)]
+    fn aborted() -> Output {
+        use std::os::unix::process::ExitStatusExt;
+        Output { status: std::process::ExitStatus::from_raw(6), stdout: b"{\"devices\":[".to_vec(), stderr: Vec::new() }
+    }
+
+    #[cfg(unix)]
     #[test]
     fn a_driver_that_aborts_is_reported_and_the_cpu_backend_is_still_listed() {
-        use std::os::unix::process::ExitStatusExt;
-        let aborted = std::process::ExitStatus::from_raw(6);
-        let output = Output { status: aborted, stdout: b"{\"devices\":[".to_vec(), stderr: Vec::new() };
-        let text = table(&Answer::deserialize(understand(&output)).unwrap(), 1);
+        let text = table(&Answer::deserialize(ask(|_| Ok(aborted())).unwrap()).unwrap(), 1);
         assert!(text.contains("the CPU backend (1 thread)"), "{text}");
-        assert!(text.contains("a Vulkan driver brought down the process that asked it (signal: 6"), "{text}");
+        assert!(text.contains("a Vulkan driver crashed the process that asked it (signal: 6"), "{text}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_whose_driver_aborts_is_listed_with_its_neighbours() {
+        let device = |index: usize, name: &str| {
+            json!({ "index": index, "name": name, "kind": "cpu", "vulkan_version": "1.3.0", "driver": "d", "driver_version": "2",
+                    "missing": [], "usable": true })
+        };
+        let said =
+            |value: Value| Output { status: Default::default(), stdout: value.to_string().into(), stderr: Vec::new() };
+        let child = |question: Option<usize>| match question {
+            None => Ok(said(json!({ "devices": [device(0, "Wild"), device(1, "Tame")], "problem": null }))),
+            Some(0) => Ok(aborted()),
+            Some(_) => Ok(said(exactness(Some(true), None, None))),
+        };
+        let text = table(&Answer::deserialize(ask(child).unwrap()).unwrap(), 1);
+        assert!(
+            text.contains("\n0       Wild                        cpu   1.3.0   d 2     yes     unknown\n"),
+            "{text}"
+        );
+        assert!(text.contains("\n1       Tame                        cpu   1.3.0   d 2     yes     yes\n"), "{text}");
+        assert!(
+            text.contains(
+                "\ndevice 0 may be exact or not: a Vulkan driver crashed the process that asked it (signal: 6"
+            ),
+            "{text}"
+        );
     }
 }

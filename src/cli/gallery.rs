@@ -5,6 +5,7 @@ use super::interrupt::Interrupt;
 use super::setup::{BackendFlags, SceneFlags, bake_scene, film_of};
 use super::sheet::{self, Sheet};
 use crate::film::{Film, FilmError, OutputFile, Rect};
+use crate::plot::figure::Frame;
 use crate::plot::lecture::{caption, numbered, plots};
 use crate::plot::page::{Entry, Part, page};
 use crate::plot::panels::Picture;
@@ -16,8 +17,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-/// Size of the page's plots, pixels.
-const PLOT: [u32; 2] = [680, 460];
+/// Width of the page's plots, pixels: a telephone shows it without loss.
+const PLOT: u32 = 500;
 
 /// Renders the `.toml` files of `folder` into `into`: a PNG each, and `index.html`.
 pub fn run(folder: &Path, into: &Path, flags: &SceneFlags, backend: &BackendFlags) -> anyhow::Result<ExitCode> {
@@ -26,13 +27,10 @@ pub fn run(folder: &Path, into: &Path, flags: &SceneFlags, backend: &BackendFlag
     std::fs::create_dir_all(into).map_err(|error| FilmError::write(into, error))?;
     let mut parts: Vec<Part> = Vec::new();
     for path in &scenes {
-        let (entry, scene) = entry_of(path, into, flags, backend)?;
+        let entry = entry_of(path, into, flags, backend)?;
         match parts.iter_mut().find(|part| entry.row.is_some() && part.entries[0].row == entry.row) {
             Some(part) => part.entries.push(entry),
-            None => {
-                let plots = entry.row.map_or(Ok(Vec::new()), |row| plots_of(row, &scene))?;
-                parts.push(Part { entries: vec![entry], plots });
-            }
+            None => parts.push(Part { entries: vec![entry] }),
         }
         if let Some(code) = interrupt.exit_code() {
             return Ok(ExitCode::from(code));
@@ -46,10 +44,16 @@ pub fn run(folder: &Path, into: &Path, flags: &SceneFlags, backend: &BackendFlag
     Ok(ExitCode::SUCCESS)
 }
 
-/// The row's plots as SVG.
-fn plots_of(row: u32, scene: &Scene) -> anyhow::Result<Vec<String>> {
-    let svg = |figure: &Figure| Ok(String::from_utf8_lossy(&render(figure, Format::Svg, PLOT)?).into_owned());
-    plots(row, scene)?.iter().map(svg).collect()
+/// The scene's plots as SVG.
+fn plots_of(row: u32, title: &str, scene: &Scene) -> anyhow::Result<Vec<String>> {
+    let svg = |figure: &Figure| {
+        let height = match figure.frame {
+            Frame::Bodies(_) | Frame::Ramp { .. } => 290,
+            _ => 470,
+        };
+        Ok(String::from_utf8_lossy(&render(figure, Format::Svg, [PLOT, height])?).into_owned())
+    };
+    plots(row, title, scene)?.iter().map(svg).collect()
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), FilmError> {
@@ -72,8 +76,8 @@ fn scenes_in(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     Ok(scenes)
 }
 
-/// What the page shows of the scene in `path`, whose picture goes into `folder`; and the scene, of panels the first.
-fn entry_of(path: &Path, folder: &Path, flags: &SceneFlags, backend: &BackendFlags) -> anyhow::Result<(Entry, Scene)> {
+/// What the page shows of the scene in `path`, whose picture goes into `folder`.
+fn entry_of(path: &Path, folder: &Path, flags: &SceneFlags, backend: &BackendFlags) -> anyhow::Result<Entry> {
     let unreadable = |source| SceneError::Io { location: Location::file(path), source };
     let text = std::fs::read_to_string(path).map_err(unreadable)?;
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
@@ -88,16 +92,16 @@ fn entry_of(path: &Path, folder: &Path, flags: &SceneFlags, backend: &BackendFla
     write(&folder.join(&stem).with_extension("png"), &sheet::png(&whole)?)?;
     let png = |(label, picture): &(Option<String>, Picture)| Ok((label.clone(), sheet::png(picture)?));
     let (row, title) = numbered(&stem);
-    let entry = Entry {
+    Ok(Entry {
         row,
         title: title.replace('-', " "),
         caption: caption(&text),
         pictures: pictures.iter().map(png).collect::<anyhow::Result<_>>()?,
         columns: sheet.columns(),
+        plots: row.map_or(Ok(Vec::new()), |row| plots_of(row, title, &flags.load(path)?))?,
         text,
         name: stem.clone(),
-    };
-    Ok((entry, flags.load(path)?))
+    })
 }
 
 /// All samples of the scene.

@@ -1,10 +1,18 @@
-//! Ctrl-C and SIGTERM: the first ends the render on a whole pass, the second quits at once.
+//! Ctrl-C and SIGTERM: before there is anything to save the first ends the program, later it ends the render on a whole
+//! pass; the second quits at once.
 
+use crate::film::OutputFile;
 use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::flag;
+use signal_hook::{flag, low_level};
 use std::io;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread::{self, Thread};
+use std::time::Duration;
+
+/// How soon a signal is noticed that ends the program.
+const LOOK_AGAIN: Duration = Duration::from_millis(20);
 
 /// Listens for signals from its creation on.
 pub struct Interrupt {
@@ -30,5 +38,38 @@ impl Interrupt {
             0 => None,
             signal => Some(128 + signal as u8),
         }
+    }
+
+    /// Does work that makes nothing worth saving: a signal meanwhile ends the program, without the unfinished `files`.
+    pub fn expendable<T>(&self, files: &[&OutputFile], work: impl FnOnce() -> T) -> T {
+        let temporaries: Vec<&Path> = files.iter().filter_map(|file| file.temporary()).collect();
+        let done = AtomicBool::new(false);
+        thread::scope(|scope| {
+            let watcher = scope.spawn(|| {
+                while !done.load(Ordering::SeqCst) {
+                    if let Some(code) = self.exit_code() {
+                        // Nobody could act on a failure here.
+                        temporaries.iter().for_each(|path| drop(std::fs::remove_file(path)));
+                        low_level::exit(code.into());
+                    }
+                    thread::park_timeout(LOOK_AGAIN);
+                }
+            });
+            let _leave = Leave { done: &done, watcher: watcher.thread() };
+            work()
+        })
+    }
+}
+
+/// Sends the watcher home, also when the work panics.
+struct Leave<'a> {
+    done: &'a AtomicBool,
+    watcher: &'a Thread,
+}
+
+impl Drop for Leave<'_> {
+    fn drop(&mut self) {
+        self.done.store(true, Ordering::SeqCst);
+        self.watcher.unpark();
     }
 }

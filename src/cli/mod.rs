@@ -5,6 +5,7 @@ pub mod compare;
 pub mod devices;
 mod exact;
 mod fit;
+mod functions;
 mod gallery;
 mod growth;
 mod interrupt;
@@ -61,7 +62,7 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Draw a model: lobes, distributions, Fresnel, albedo and others.
     Plot(plot::PlotArgs),
-    /// Prove that pictures are right: compare them with those of Mitsuba 3.
+    /// Prove that a device computes what it must, and that pictures are those of Mitsuba 3.
     Verify(verify::VerifyArgs),
     /// List what can be used, and why the rest cannot.
     Devices(devices::DevicesArgs),
@@ -117,7 +118,8 @@ pub fn main() -> ExitCode {
         if is_broken_pipe(&error) {
             return ExitCode::SUCCESS;
         }
-        eprintln!("error: {}", message(&error));
+        // Of a scene file all that is wrong is told, each on its line.
+        message(&error).lines().for_each(|line| eprintln!("error: {line}"));
         ExitCode::from(exit_code(&error))
     })
 }
@@ -148,10 +150,7 @@ fn exit_code(error: &anyhow::Error) -> u8 {
             return EXIT_USAGE;
         }
         if let Some(error) = cause.downcast_ref::<SceneError>() {
-            return match error {
-                SceneError::Bad { .. } => EXIT_BAD_INPUT,
-                SceneError::Io { .. } => EXIT_IO,
-            };
+            return if error.is_io() { EXIT_IO } else { EXIT_BAD_INPUT };
         }
         if let Some(error) = cause.downcast_ref::<RenderError>() {
             return match error {
@@ -163,7 +162,10 @@ fn exit_code(error: &anyhow::Error) -> u8 {
         if let Some(error) = cause.downcast_ref::<FilmError>() {
             return error.exit_code();
         }
-        if cause.is::<BakeError>() || cause.is::<MergeError>() {
+        if let Some(error) = cause.downcast_ref::<BakeError>() {
+            return if matches!(error, BakeError::Aborted) { EXIT_INTERRUPTED } else { EXIT_BAD_INPUT };
+        }
+        if cause.is::<MergeError>() {
             return EXIT_BAD_INPUT;
         }
         if cause.is::<io::Error>() {

@@ -260,6 +260,11 @@ fn differing_bounce(a: &[Bounce], b: &[Bounce]) -> Option<String> {
     (a.len() != b.len()).then(|| format!("{} bounces and {}", a.len(), b.len()))
 }
 
+/// `1 sample`, `2 samples`.
+fn counted(samples: u64) -> String {
+    format!("{samples} sample{}", if samples == 1 { "" } else { "s" })
+}
+
 /// What follows the name of a scene in messages.
 fn panel_suffix(panel: Option<&str>) -> String {
     panel.map_or(String::new(), |label| format!(", panel {label:?}"))
@@ -270,14 +275,14 @@ fn print_result(result: &SceneResult) -> std::io::Result<()> {
     for comparison in &result.comparisons {
         writeln!(
             out,
-            "{}{}: {} of {} pixels differ ({}x{}, {} samples, seed {}; {} and {})",
+            "{}{}: {} of {} pixels differ ({}x{}, {}, seed {}; {} and {})",
             result.scene,
             panel_suffix(result.panel.as_deref()),
             comparison.differ,
             comparison.pixels,
             result.width,
             result.height,
-            result.samples,
+            counted(result.samples.into()),
             result.seed,
             comparison.reference,
             comparison.other
@@ -295,7 +300,7 @@ type Expected = BTreeMap<String, String>;
 fn key(scene: &str, panel: Option<&str>, width: u64, height: u64, samples: u64, seed: u64) -> String {
     let name =
         Path::new(scene).file_name().map_or_else(|| scene.to_owned(), |name| name.to_string_lossy().into_owned());
-    format!("{name}{} at {width}x{height}, {samples} samples, seed {seed}", panel_suffix(panel))
+    format!("{name}{} at {width}x{height}, {}, seed {seed}", panel_suffix(panel), counted(samples))
 }
 
 /// Reads what `--json` wrote.

@@ -88,6 +88,14 @@ enum What {
         #[arg(long, value_name = "DEGREES", default_value = "40", value_parser = angle)]
         delta: f64,
     },
+    /// How light falls off with distance.
+    Attenuation {
+        /// c1, c2 and c3 of min(1, 1 / (c1 + c2 d + c3 d^2)).
+        #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "0.6,0.35,0.05", value_parser = constant)]
+        c: Vec<f32>,
+    },
+    /// Reconstruction filters.
+    Filter,
     /// Flat, Gouraud and Phong shading along a row of pixels.
     Edge,
     /// What a display shows of light.
@@ -163,6 +171,10 @@ fn exponent(text: &str) -> Result<f32, String> {
 
 fn roughness(text: &str) -> Result<f32, String> {
     number_in(text, 0.01, 2.0, "a roughness").map(|v| v as f32)
+}
+
+fn constant(text: &str) -> Result<f32, String> {
+    number_in(text, 0.0, 1.0e6, "a constant").map(|v| v as f32)
 }
 
 pub fn angle(text: &str) -> Result<f64, String> {
@@ -250,6 +262,8 @@ impl What {
             Self::Fresnel(_) => "fresnel",
             Self::Ramp(_) => "ramp",
             Self::Light { .. } => "light",
+            Self::Attenuation { .. } => "attenuation",
+            Self::Filter => "filter",
             Self::Edge => "edge",
             Self::Tone { .. } => "tone",
             Self::Growth(_) => "growth",
@@ -268,6 +282,11 @@ impl What {
             Self::Fresnel(args) => curves::fresnel_figure(&args.interfaces(&["1.5", "2.417"])?),
             Self::Ramp(args) => curves::ramp_figure(&args.interfaces(&[])?),
             Self::Light { p, delta } => curves::spot_figure(p, *delta),
+            Self::Attenuation { c } => match c[..] {
+                [c1, c2, c3] => curves::attenuation_figure([c1, c2, c3]),
+                _ => return Err(Usage(format!("--c has three numbers, found {}", c.len())).into()),
+            },
+            Self::Filter => curves::filter_figure(),
             Self::Edge => edge_figure()?,
             Self::Tone { exposure } => curves::tone_figure(*exposure),
             Self::Growth(args) => args.figure()?,

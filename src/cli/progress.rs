@@ -1,6 +1,6 @@
 //! The progress bar: samples done, rate and remaining time, on stderr when it is a terminal.
 
-use crate::scene::Scene;
+use crate::scene::{Geometry, Scene};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -21,15 +21,21 @@ pub fn bar(total: u64, show: bool) -> ProgressBar {
     bar
 }
 
-/// The time a long bake has taken so far, for whoever watches; hidden with `--quiet` and where stderr is no terminal.
+/// How far a long bake is, in steps of `bake::Watch`; hidden with `--quiet` and where stderr is no terminal.
 pub fn baking(scene: &Scene) -> ProgressBar {
-    let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
-    let size = triangles + scene.objects.len();
+    let mut used = vec![false; scene.meshes.len()];
+    for object in &scene.objects {
+        if let Geometry::Mesh(id) = object.geometry {
+            used[id.0 as usize] = true;
+        }
+    }
+    let meshes = scene.meshes.iter().zip(&used).filter(|(_, used)| **used);
+    let size = meshes.map(|(mesh, _)| mesh.triangles.len()).sum::<usize>() + scene.objects.len();
     if size < LONG_BAKE || !log::log_enabled!(log::Level::Warn) || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let bar = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}  {elapsed}") {
+    let bar = ProgressBar::new(2 * size as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  {elapsed}") {
         bar.set_style(style);
     }
     bar.set_message(format!("building the hierarchy of {:.1} million triangles and objects", size as f64 * 1e-6));

@@ -2,11 +2,11 @@
 
 use super::gallery;
 use super::interrupt::Interrupt;
-use super::output::OutputFlags;
-use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, crop_of, film_of};
+use super::output::{OutputFlags, print_report};
+use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, bake_scene_until, crop_of, film_of};
 use super::sheet::{self, Sheet};
 use super::{Usage, progress, team};
-use crate::bake::SceneData;
+use crate::bake::{BakeError, SceneData};
 use crate::film::write::{Aov, Format};
 use crate::film::{Film, OutputFile, Rect};
 use crate::render::team::{Member, Order, Share, render};
@@ -33,7 +33,8 @@ Examples:
   gonio render scene.toml --pixel 320,200                every bounce of one sample
   cat scene.toml | gonio render - -o - | display         from standard input to standard output")]
 pub struct RenderArgs {
-    /// .toml, .obj, .ply, .gltf, .glb, .xml (Mitsuba); `-` is TOML on standard input; with --gallery a folder of .toml files.
+    /// .toml, .obj, .ply, .gltf, .glb, .xml (Mitsuba); `-` is TOML on standard input; `sphereflake:4`, `terrain:1M`,
+    /// `hairball:1M` and `teapots:1M` need no file; with --gallery a folder of .toml files.
     scene: PathBuf,
     /// .png, .exr, .hdr, or .gfilm for the film itself; `-` is PNG on standard output. Default: the scene's name, .png.
     #[arg(short, long, value_name = "FILE")]
@@ -50,7 +51,7 @@ pub struct RenderArgs {
     /// Stop at the end of the pass during which this time runs out.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = parse_seconds)]
     time: Option<Duration>,
-    /// Further layers of an EXR, separated by commas.
+    /// Further layers of an EXR, separated by commas: depth, normal, albedo, object, material, samples.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     aov: Vec<Aov>,
     /// Leave the background out; alpha is coverage.
@@ -133,9 +134,25 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
 
     let (mut films, mut stats) = (Vec::new(), Vec::new());
     let mut interrupted = None;
-    for scene in sheet.scenes() {
-        let (label, scene) = scene?;
-        let mut developed = develop(args, &scene, &interrupt, !quiet && !args.no_progress)?;
+    let mut scenes = sheet.scenes();
+    loop {
+        let mut next =
+            || scenes.next().map(|scene| scene.and_then(|(label, scene)| Ok((label, prepare(args, scene, &interrupt)?))));
+        let prepared = if films.is_empty() {
+            let unfinished: Vec<&OutputFile> = std::iter::once(&output).chain(&stats_file).collect();
+            interrupt.expendable(&unfinished, next)
+        } else {
+            next()
+        };
+        let Some(prepared) = prepared else { break };
+        let (label, prepared) = match prepared {
+            Err(error) if matches!(error.downcast_ref(), Some(BakeError::Aborted)) => {
+                interrupted = interrupt.exit_code();
+                break;
+            }
+            prepared => prepared?,
+        };
+        let mut developed = develop(args, &prepared, &interrupt, !quiet && !args.no_progress)?;
         if let Some(label) = label {
             developed.stats["panel"] = label.into();
         }
@@ -148,8 +165,13 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         }
     }
     match &mut films[..] {
+        // Interrupted before there was anything to save.
+        [] => return Ok(interrupted.map_or(ExitCode::SUCCESS, ExitCode::from)),
         [(_, film)] if !sheet.is_divided() => args.picture.write(film, format, &args.aov, output)?,
         panels => sheet::write(&sheet, panels, &args.picture, output)?,
+    }
+    if args.output.is_none() {
+        print_report(&format!("picture {}\n", path.display()), false)?;
     }
     if let Some(mut file) = stats_file {
         let stats =
@@ -169,17 +191,34 @@ struct Developed {
     interrupted: Option<u8>,
 }
 
-/// Bakes and renders one scene.
-fn develop(args: &RenderArgs, scene: &Scene, interrupt: &Interrupt, show_progress: bool) -> anyhow::Result<Developed> {
-    let crop = crop_of(scene, args.crop)?;
-    let bake_start = Instant::now();
-    let mut data = bake_scene(scene)?;
+/// A scene that is ready to be rendered.
+struct Prepared {
+    scene: Scene,
+    crop: Rect,
+    data: SceneData,
+    bake_time: Duration,
+}
+
+/// Bakes a scene as the flags want it.
+fn prepare(args: &RenderArgs, scene: Scene, interrupt: &Interrupt) -> anyhow::Result<Prepared> {
+    let crop = crop_of(&scene, args.crop)?;
+    let start = Instant::now();
+    let mut data = bake_scene_until(&scene, &|| interrupt.exit_code().is_some())?;
     data.header.aovs = u32::from(!args.aov.is_empty());
     data.header.hide_background |= u32::from(args.transparent);
-    let bake_time = bake_start.elapsed();
-    let members = team::members(&args.backend, &data)?;
+    Ok(Prepared { scene, crop, data, bake_time: start.elapsed() })
+}
 
-    let mut film = film_of(scene, &data, crop);
+/// Renders one scene.
+fn develop(
+    args: &RenderArgs,
+    prepared: &Prepared,
+    interrupt: &Interrupt,
+    show_progress: bool,
+) -> anyhow::Result<Developed> {
+    let Prepared { scene, crop, data, bake_time } = prepared;
+    let members = team::members(&args.backend, data)?;
+    let mut film = film_of(scene, data, *crop);
     let samples = match (&args.samples, args.time, args.scene_flags.spp) {
         (Some(range), _, _) => range.0.clone(),
         // With a time limit and no count, the time decides.
@@ -188,7 +227,7 @@ fn develop(args: &RenderArgs, scene: &Scene, interrupt: &Interrupt, show_progres
     };
     let outcome = render_samples(members, samples, args.time, &mut film, interrupt, show_progress)?;
     report(&film, &outcome.counters);
-    let stats = stats_json(args, &data, &film, &outcome, bake_time);
+    let stats = stats_json(args, data, &film, &outcome, *bake_time);
     Ok(Developed { film, stats, seconds: outcome.render_time.as_secs_f64(), interrupted: outcome.interrupted })
 }
 

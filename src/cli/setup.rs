@@ -1,7 +1,7 @@
 //! What render, parity and others share: from flags to a baked scene and a renderer.
 
 use super::{Usage, exact, progress, team};
-use crate::bake::{SceneData, bake};
+use crate::bake::{SceneData, Watch, bake_watched};
 use crate::film::{Film, FilmSpec, Rect};
 use crate::render::cpu::CpuRenderer;
 use crate::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
@@ -9,7 +9,7 @@ use crate::render::{RenderError, Renderer};
 use crate::scene::{Integrator, Scene, Window, load};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::str::FromStr;
 
 /// `WxH`, 1 to 65,535 each.
@@ -168,9 +168,16 @@ impl SceneFlags {
 
 /// Bakes a scene and prints what baking dropped.
 pub fn bake_scene(scene: &Scene) -> anyhow::Result<SceneData> {
+    bake_scene_until(scene, &|| false)
+}
+
+/// The same; gives up with `BakeError::Aborted` when `abort` says so.
+pub fn bake_scene_until(scene: &Scene, abort: &(dyn Fn() -> bool + Sync)) -> anyhow::Result<SceneData> {
     let bar = progress::baking(scene);
-    let data = bake(scene).with_context(|| scene.name.clone())?;
+    log::info!("{}: baking", scene.name);
+    let data = bake_watched(scene, &Watch { abort, advance: &|count| bar.inc(count) });
     bar.finish_and_clear();
+    let data = data.with_context(|| scene.name.clone())?;
     for warning in &data.warnings {
         log::warn!("{warning}");
     }
@@ -291,28 +298,6 @@ pub fn crop_of(scene: &Scene, crop: Option<Crop>) -> anyhow::Result<Rect> {
 
 /// An empty film for a scene.
 pub fn film_of(scene: &Scene, data: &SceneData, crop: Rect) -> Film {
-    let integrator = match scene.settings.integrator {
-        Integrator::Local => "local",
-        Integrator::Whitted => "whitted",
-        Integrator::Direct => "direct",
-        Integrator::Path => "path",
-    };
-    Film::new(FilmSpec {
-        width: scene.film.width,
-        height: scene.film.height,
-        crop,
-        unit_exponent: scene.film.unit_exponent,
-        seed: scene.settings.seed,
-        scene_digest: data.digest(),
-        scene_name: PathBuf::from(&scene.name)
-            .file_name()
-            .map_or_else(|| scene.name.clone(), |name| name.to_string_lossy().into_owned()),
-        integrator: integrator.to_owned(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        transparent: data.header.hide_background != 0,
-        aovs: data.header.aovs != 0,
-        tonemap: scene.film.tonemap,
-        exposure: scene.film.exposure,
-        gamma: scene.film.gamma,
-    })
+    let (transparent, aovs) = (data.header.hide_background != 0, data.header.aovs != 0);
+    Film::new(FilmSpec { crop, ..FilmSpec::of(scene, data.digest(), transparent, aovs) })
 }

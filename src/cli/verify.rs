@@ -1,7 +1,7 @@
 //! `gonio verify`: proofs, as one table.
 
 use super::setup::{BackendFlags, bake_scene, crop_of, film_of};
-use super::{EXIT_DIFFERS, Usage};
+use super::{EXIT_DIFFERS, Usage, functions};
 use crate::film::read::read_picture;
 use crate::film::{Film, FilmError, Image, OutputFile, write};
 use crate::render::{Job, Watch};
@@ -27,6 +27,8 @@ const DISPLAY_SAMPLES: u32 = 8;
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
+  gonio verify --functions                                every function on 2^22 sets of arguments, CPU against device
+  gonio verify --functions 100000 --only fresnel          some of them on fewer
   gonio verify --mitsuba ../mitsuba-data                  every scene that has a reference
   gonio verify --mitsuba ../mitsuba-data --only envmap    those whose names say envmap
   gonio verify --mitsuba ../mitsuba-data --keep out       with pictures of what failed
@@ -37,6 +39,10 @@ pub struct VerifyArgs {
     /// pictures where there is a JPEG.
     #[arg(long, value_name = "DIR")]
     mitsuba: Option<PathBuf>,
+    /// Compare every function that the CPU and the device share on N sets of arguments, bit for bit; 4194304 if N is not
+    /// given.
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "4194304", value_parser = clap::value_parser!(u32).range(1..))]
+    functions: Option<u32>,
     /// Only what has one of these words in its name; may be repeated.
     #[arg(long, value_name = "WORD")]
     only: Vec<String>,
@@ -54,18 +60,34 @@ pub struct VerifyArgs {
 }
 
 pub fn run(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
-    let Some(folder) = &args.mitsuba else {
-        return Err(Usage("nothing to verify: give --mitsuba DIR".to_owned()).into());
-    };
-    let cases = find_cases(folder).with_context(|| folder.display().to_string())?;
-    let wanted = |case: &&Case| {
-        let name = case.scene.display().to_string();
-        args.only.is_empty() || args.only.iter().any(|word| name.contains(word))
-    };
-    let cases: Vec<&Case> = cases.iter().filter(wanted).collect();
-    if cases.is_empty() {
-        return Err(Usage(format!("no scene with a reference in {}", folder.display())).into());
+    let mut rows = Vec::new();
+    if let Some(count) = args.functions {
+        rows.extend(functions::run(count, &args.backend, |name| args.wants(name))?);
     }
+    if let Some(folder) = &args.mitsuba {
+        rows.extend(compare_with_mitsuba(args, folder)?);
+    }
+    if args.functions.is_none() && args.mitsuba.is_none() {
+        return Err(Usage("nothing to verify: give --functions or --mitsuba DIR".to_owned()).into());
+    }
+    if rows.is_empty() {
+        return Err(Usage(format!("nothing here is named {}", args.only.join(" or "))).into());
+    }
+    let text = if args.json { serde_json::to_string_pretty(&rows)? + "\n" } else { table(&rows) };
+    std::io::stdout().write_all(text.as_bytes()).context("cannot write standard output")?;
+    Ok(if all_proved(&rows) { ExitCode::SUCCESS } else { ExitCode::from(EXIT_DIFFERS) })
+}
+
+impl VerifyArgs {
+    /// Whether `--only` asks for what has this name.
+    fn wants(&self, name: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|word| name.contains(word))
+    }
+}
+
+fn compare_with_mitsuba(args: &VerifyArgs, folder: &Path) -> anyhow::Result<Vec<Row>> {
+    let cases = find_cases(folder).with_context(|| folder.display().to_string())?;
+    let cases: Vec<&Case> = cases.iter().filter(|case| args.wants(&case.scene.display().to_string())).collect();
     if let Some(keep) = &args.keep {
         std::fs::create_dir_all(keep).with_context(|| keep.display().to_string())?;
     }
@@ -75,9 +97,7 @@ pub fn run(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
         log::info!("{}: {}", row.subject, row.finding);
         rows.push(row);
     }
-    let text = if args.json { serde_json::to_string_pretty(&rows)? + "\n" } else { table(&rows) };
-    std::io::stdout().write_all(text.as_bytes()).context("cannot write standard output")?;
-    Ok(if all_proved(&rows) { ExitCode::SUCCESS } else { ExitCode::from(EXIT_DIFFERS) })
+    Ok(rows)
 }
 
 fn run_case(args: &VerifyArgs, folder: &Path, case: &Case) -> anyhow::Result<Row> {

@@ -78,6 +78,14 @@ impl OutputFile {
         &self.path
     }
 
+    /// The unfinished file, which whoever ends the program without unwinding has to remove.
+    pub fn temporary(&self) -> Option<&Path> {
+        match &self.sink {
+            Sink::Temporary { temporary, .. } => temporary.0.as_deref(),
+            Sink::Stdout(_) | Sink::Direct(_) => None,
+        }
+    }
+
     /// Whether it is standard output, which then carries nothing else.
     pub fn is_stdout(&self) -> bool {
         matches!(self.sink, Sink::Stdout(_))

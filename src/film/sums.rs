@@ -4,8 +4,9 @@
 use super::display::Display;
 use super::{MAX_SAMPLES, MergeError, Rect, SampleRanges};
 use crate::layout::{AovPixel, FilmSum, INVALID, T_INFINITE};
-use crate::scene::ToneMap;
+use crate::scene::{Integrator, Scene, ToneMap};
 use std::ops::Range;
+use std::path::Path;
 
 /// C + k of the fixed-point film: no sample's sum exceeds 2^38 (2^16 film units in steps of 2^-22), so
 /// `MAX_SAMPLES` of them stay within 2^62.
@@ -46,6 +47,33 @@ pub struct FilmSpec {
 }
 
 impl FilmSpec {
+    /// The whole frame of a scene as it is baked: `transparent` without its background, with auxiliary values if `aovs`.
+    pub fn of(scene: &Scene, scene_digest: [u8; 32], transparent: bool, aovs: bool) -> Self {
+        let integrator = match scene.settings.integrator {
+            Integrator::Local => "local",
+            Integrator::Whitted => "whitted",
+            Integrator::Direct => "direct",
+            Integrator::Path => "path",
+        };
+        let name = Path::new(&scene.name).file_name();
+        Self {
+            width: scene.film.width,
+            height: scene.film.height,
+            crop: Rect::whole(scene.film.width, scene.film.height),
+            unit_exponent: scene.film.unit_exponent,
+            seed: scene.settings.seed,
+            scene_digest,
+            scene_name: name.map_or_else(|| scene.name.clone(), |name| name.to_string_lossy().into_owned()),
+            integrator: integrator.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            transparent,
+            aovs,
+            tonemap: scene.film.tonemap,
+            exposure: scene.film.exposure,
+            gamma: scene.film.gamma,
+        }
+    }
+
     /// How the picture is displayed.
     pub fn display(&self) -> Display {
         Display { tonemap: self.tonemap, exposure: self.exposure, gamma: self.gamma, transparent: self.transparent }

@@ -4,6 +4,9 @@ use bytemuck::{Pod, Zeroable};
 
 /// Levels of pending rays: one per scattering depth, 0 to 64.
 pub const MAX_LEVELS: u32 = 66;
+/// Groups of paths that are shaded together: those that hit nothing, and one for each model.
+pub const MAX_SHADE_GROUPS: u32 = 24;
+pub const SHADE_GROUP_MISSED: u32 = 0;
 
 /// Arguments of an indirect dispatch, in workgroups.
 #[repr(C)]
@@ -14,7 +17,7 @@ pub struct DispatchArguments {
     pub z: u32,
 }
 
-/// One per device. 380 bytes.
+/// One per device. 752 bytes.
 /// A round is: schedule; extend (this round's chunk) and shadow (last round's queue); shade.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -22,7 +25,10 @@ pub struct Control {
     /// Indirect arguments written by schedule.
     pub extend: DispatchArguments,
     pub shadow: DispatchArguments,
-    pub shade: DispatchArguments,
+    /// By extend: of each group.
+    pub shade: [DispatchArguments; MAX_SHADE_GROUPS as usize],
+    /// Paths of the chunk in each group.
+    pub shade_count: [u32; MAX_SHADE_GROUPS as usize],
     /// 1 once no level and no shadow ray is pending.
     pub done: u32,
     /// Level the chunk was taken from, its first entry and its size.

@@ -108,7 +108,8 @@ pub struct SceneHeader {
 pub const FILTER_KNOTS: u32 = 256;
 
 /// What one batch of samples covers. 48 bytes.
-/// Slot i is pixel `first_pixel + i % pixel_count` of the crop (row by row) and sample `first_sample + i / pixel_count`.
+/// Slot i is pixel `first_pixel + i / sample_count` of the crop (row by row) and sample `first_sample + i % sample_count`:
+/// what runs side by side looks the same way.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Batch {

@@ -1,16 +1,18 @@
 //! Curves of the parts that models are made of: no material is needed for them.
 
-use super::figure::{Axis, Color, Curve, Figure, Frame, Side, Strip, palette};
+use super::figure::{Axis, Color, Curve, Figure, Frame, STEPS, Side, Strip, palette};
+use crate::bake::filter::filter_value;
 use crate::bake::gaussian_scale;
 use crate::film::display::{quantise, srgb_encode};
 use crate::film::tone::tone_curve;
 use crate::layout::{
-    DISTRIBUTION_BECKMANN, DISTRIBUTION_GAUSSIAN, DISTRIBUTION_PHONG, DISTRIBUTION_TROWBRIDGE_REITZ, Light,
+    ATTENUATION_INVERSE_SQUARE, ATTENUATION_NONE, ATTENUATION_POLYNOMIAL, DISTRIBUTION_BECKMANN, DISTRIBUTION_GAUSSIAN,
+    DISTRIBUTION_PHONG, DISTRIBUTION_TROWBRIDGE_REITZ, Light,
 };
-use crate::scene::ToneMap;
+use crate::scene::{Filter, ToneMap};
 use crate::shading::distribution::{facet_d, smith_g_correlated};
 use crate::shading::fresnel::{fresnel_conductor3, fresnel_dielectric, fresnel_schlick3};
-use crate::shading::light::spot_factor;
+use crate::shading::light::{attenuate, spot_factor};
 use crate::shading::lobe::cos_power;
 use crate::shading::math::normalize3;
 use crate::shading::microfacet::v_cavity_g;
@@ -214,6 +216,60 @@ pub fn spot_figure(exponents: &[f32], delta: f64) -> Figure {
     let frame = Frame::Polar { side: Side::Lower, unit: "I_p / I_L'".into(), max: 1.0, arrows: Vec::new() };
     let note = format!("I_p = I_L' (cos γ)^p, zero beyond the cone δ = {delta}°");
     Figure { title: "Directed light".into(), note, frame, curves }
+}
+
+/// c1, c2 and c3 of scenes/lecture/05-attenuation.toml.
+pub const CAPPED: [f32; 3] = [0.6, 0.35, 0.05];
+
+/// How light falls off with distance (row 5): 1 / d^2, 1 / (c1 + c2 d + c3 d^2) capped at 1, not at all.
+pub fn attenuation_figure([c1, c2, c3]: [f32; 3]) -> Figure {
+    const FARTHEST: f64 = 8.0;
+    let polynomial = Light { c: Vec3::new(c1, c2, c3), attenuation: ATTENUATION_POLYNOMIAL, ..Light::default() };
+    let laws = [
+        ("1 / d²".to_owned(), Light { attenuation: ATTENUATION_INVERSE_SQUARE, ..polynomial }),
+        (format!("c = {c1}, {c2}, {c3}"), polynomial),
+        ("none".to_owned(), Light { attenuation: ATTENUATION_NONE, ..polynomial }),
+    ];
+    let curve = |(i, (name, light)): (usize, (String, Light))| {
+        // At the lamp itself 1 / d^2 has no value.
+        let fall = |d: f64| f64::from(attenuate(&light, d.max(1.0e-3) as f32, (d * d).max(1.0e-6) as f32));
+        Curve::sampled(name, i, [0.0, FARTHEST], fall)
+    };
+    let frame = Frame::Cartesian {
+        x: Axis { label: "distance d".into(), low: 0.0, high: FARTHEST, step: 1.0 },
+        y: Axis { label: "f_att".into(), low: 0.0, high: 1.2, step: 0.2 },
+        marks: Vec::new(),
+    };
+    let note = "min(1, 1 / (c₁ + c₂ d + c₃ d²)) beside the law of physics, which has no bound";
+    let curves = laws.into_iter().enumerate().map(curve).collect();
+    Figure { title: "Attenuation".into(), note: note.into(), frame, curves }
+}
+
+/// Reconstruction filters of their usual widths along one axis, each of integral 1 (row 26).
+pub fn filter_figure() -> Figure {
+    let filters = [
+        ("box", Filter::Box { radius: 0.5 }),
+        ("tent", Filter::Tent { radius: 1.0 }),
+        ("gaussian", Filter::Gaussian { radius: 1.5, sigma: 0.5 }),
+        ("mitchell", Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 }),
+        ("blackman-harris", Filter::BlackmanHarris { radius: 2.0 }),
+    ];
+    // The box ends half way between two points.
+    const REACH: f64 = 2.4;
+    let curve = |(i, (name, filter)): (usize, (&str, Filter))| {
+        let mut curve = Curve::sampled(name, i, [-REACH, REACH], |x| filter_value(&filter, x));
+        let area = curve.points.iter().map(|point| point[1]).sum::<f64>() * 2.0 * REACH / STEPS as f64;
+        curve.points.iter_mut().for_each(|point| point[1] /= area);
+        curve
+    };
+    let frame = Frame::Cartesian {
+        x: Axis { label: "distance from the pixel's centre [pixels]".into(), low: -REACH, high: REACH, step: 0.5 },
+        y: Axis { label: "weight".into(), low: -0.2, high: 1.2, step: 0.2 },
+        marks: Vec::new(),
+    };
+    let note = "what a sample counts for a pixel; negative weights sharpen";
+    let curves = filters.into_iter().enumerate().map(curve).collect();
+    Figure { title: "Filters".into(), note: note.into(), frame, curves }
 }
 
 /// What a display shows of grey light, against its stops from 1 (row 6).

@@ -37,33 +37,78 @@ impl Panel {
     }
 }
 
+/// Pictures less wide than this have their legend below, in rows, and their note in several lines: for telephones.
+const NARROW: f64 = 600.0;
+const LINE: f64 = TEXT * 1.5;
+
 /// Draws `figure` into a canvas of `size` pixels.
 pub fn draw<DB: DrawingBackend>(canvas: &Canvas<DB>, figure: &Figure, size: [u32; 2]) -> Result<()> {
     let [width, height] = size.map(f64::from);
-    canvas.text(&figure.title, [width / 2.0, 22.0], TITLE, Anchor::Centre, INK)?;
-    canvas.text(&figure.note, [width / 2.0, 45.0], NOTE, Anchor::Centre, GREY)?;
-    let named = figure.curves.iter().filter(|curve| !curve.name.is_empty());
-    let longest = named.map(|curve| text_width(&curve.name, TEXT)).fold(0.0, f64::max);
-    let legend = if longest > 0.0 { longest + 58.0 } else { 20.0 };
-    let panel = Panel { left: 20.0, top: 62.0, right: width - legend, bottom: height - 14.0 };
+    let narrow = width < NARROW;
+    let title = TITLE.min((width - 16.0) / text_width(&figure.title, 1.0).max(1.0));
+    canvas.text(&figure.title, [width / 2.0, 22.0], title, Anchor::Centre, INK)?;
+    let lines = if narrow { wrapped(&figure.note, width - 16.0) } else { vec![figure.note.clone()] };
+    let mut top = 45.0;
+    for line in &lines {
+        canvas.text(line, [width / 2.0, top], NOTE, Anchor::Centre, GREY)?;
+        top += NOTE * 1.25;
+    }
+    let named: Vec<&Curve> = figure.curves.iter().filter(|curve| !curve.name.is_empty()).collect();
+    let longest = named.iter().map(|curve| text_width(&curve.name, TEXT)).fold(0.0, f64::max);
+    let legend = if longest > 0.0 && !narrow { longest + 58.0 } else { 20.0 };
+    let places = if narrow { rows(&named, width) } else { column(&named, width - legend + 14.0) };
+    let below = if narrow { places.last().map_or(0.0, |place| place[1] + LINE) } else { 0.0 };
+    let bottom = height - 14.0 - below;
+    let panel = Panel { left: 20.0, top: top - 4.0, right: width - legend, bottom };
     match &figure.frame {
         Frame::Cartesian { x, y, marks } => cartesian(canvas, panel, x, y, marks, &figure.curves)?,
         Frame::Polar { side, unit, max, arrows } => polar(canvas, panel, *side, unit, *max, arrows, &figure.curves)?,
         Frame::Ramp { x, strips } => ramp(canvas, panel, x, strips)?,
         Frame::Bodies(shown) => bodies(canvas, panel, shown)?,
     }
-    legend_at(canvas, [width - legend + 14.0, 84.0], &figure.curves)
-}
-
-fn legend_at<DB: DrawingBackend>(canvas: &Canvas<DB>, at: [f64; 2], curves: &[Curve]) -> Result<()> {
-    let [x, mut y] = at;
-    for curve in curves.iter().filter(|curve| !curve.name.is_empty()) {
+    let from = if narrow { bottom + LINE / 2.0 } else { 84.0 };
+    for (curve, [x, y]) in named.into_iter().zip(places) {
+        let y = from + y;
         let pen = Pen { color: curve.color, width: CURVE, dashed: curve.dashed };
         canvas.line(&[[x, y], [x + 26.0, y]], pen)?;
         canvas.text(&curve.name, [x + 34.0, y], TEXT, Anchor::Left, INK)?;
-        y += TEXT * 1.5;
     }
     Ok(())
+}
+
+/// Words in lines that are no wider than `width`.
+fn wrapped(text: &str, width: f64) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let last = lines.len() - 1;
+        let longer = if lines[last].is_empty() { word.to_owned() } else { format!("{} {word}", lines[last]) };
+        if lines[last].is_empty() || text_width(&longer, NOTE) <= width {
+            lines[last] = longer;
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines
+}
+
+/// Places of a legend's entries one below the other.
+fn column(named: &[&Curve], x: f64) -> Vec<[f64; 2]> {
+    (0..named.len()).map(|i| [x, i as f64 * LINE]).collect()
+}
+
+/// Places of a legend's entries in rows of a picture of this width.
+fn rows(named: &[&Curve], width: f64) -> Vec<[f64; 2]> {
+    let (mut x, mut y) = (24.0, 0.0);
+    let mut places = Vec::new();
+    for curve in named {
+        let length = 34.0 + text_width(&curve.name, TEXT);
+        if x > 24.0 && x + length > width - 12.0 {
+            (x, y) = (24.0, y + LINE);
+        }
+        places.push([x, y]);
+        x += length + 22.0;
+    }
+    places
 }
 
 /// The x axis under `panel`, with its ticks' grid lines.
@@ -250,7 +295,8 @@ fn ramp<DB: DrawingBackend>(canvas: &Canvas<DB>, panel: Panel, x: &Axis, strips:
         let [top, bottom] = [panel.top + row * i as f64 + 3.0, panel.top + row * (i + 1) as f64 - 3.0];
         let count = strip.colors.len() as f64;
         for (k, color) in strip.colors.iter().enumerate() {
-            let [left, right] = [k as f64, (k + 1) as f64].map(|k| panel.left + panel.width() * k / count);
+            // Each over the rest of the one before: no seams.
+            let (left, right) = (panel.left + panel.width() * k as f64 / count, panel.right);
             canvas.polygon(&[[left, top], [right, top], [right, bottom], [left, bottom]], *color)?;
         }
         canvas.text(&strip.name, [panel.left - 10.0, (top + bottom) / 2.0], TEXT, Anchor::Right, INK)?;
@@ -258,17 +304,21 @@ fn ramp<DB: DrawingBackend>(canvas: &Canvas<DB>, panel: Panel, x: &Axis, strips:
     Ok(())
 }
 
+/// In rows of up to three.
 fn bodies<DB: DrawingBackend>(canvas: &Canvas<DB>, panel: Panel, bodies: &[Body]) -> Result<()> {
-    let width = panel.width() / bodies.len().max(1) as f64;
+    let columns = bodies.len().clamp(1, 3);
+    let rows = bodies.len().div_ceil(columns).max(1);
+    let (width, height) = (panel.width() / columns as f64, panel.height() / rows as f64);
     for (i, body) in bodies.iter().enumerate() {
-        let left = panel.left + width * i as f64;
-        let side = width.min(panel.height() - 30.0);
-        let corner = [left + (width - side) / 2.0, panel.top + (panel.height() - 30.0 - side) / 2.0];
+        let (left, top) = (panel.left + width * (i % columns) as f64, panel.top + height * (i / columns) as f64);
+        let side = width.min(height - 30.0);
+        let corner = [left + (width - side) / 2.0, top + (height - 30.0 - side) / 2.0];
         let place = |p: &[f64; 2]| [corner[0] + side * p[0], corner[1] + side * (1.0 - p[1])];
         for facet in &body.facets {
             canvas.polygon(&facet.corners.iter().map(place).collect::<Vec<_>>(), facet.color)?;
         }
-        canvas.text(&body.name, [left + width / 2.0, panel.bottom - 12.0], TEXT, Anchor::Centre, INK)?;
+        let size = TEXT.min(width / text_width(&body.name, 1.0).max(1.0));
+        canvas.text(&body.name, [left + width / 2.0, top + height - 12.0], size, Anchor::Centre, INK)?;
     }
     Ok(())
 }

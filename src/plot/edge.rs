@@ -2,13 +2,13 @@
 
 use super::canvas::PlotError;
 use super::figure::{Axis, Curve, Figure, Frame, Mark, palette};
-use crate::bake::{SceneData, bake};
-use crate::film::{Film, FilmSpec, Rect};
+use crate::bake::bake;
+use crate::film::{Film, FilmSpec};
 use crate::layout::INVALID;
 use crate::render::cpu::CpuRenderer;
 use crate::render::{Job, Renderer, Watch};
+use crate::scene::Shading;
 use crate::scene::load::toml::scene_from_text;
-use crate::scene::{Scene, Shading};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -28,7 +28,7 @@ pub fn profile(shading: Shading) -> Result<Profile, PlotError> {
     scene.settings.shading = shading;
     let data = bake(&scene).map_err(PlotError::new)?;
     let mut renderer = CpuRenderer::new(&data, Some(1)).map_err(PlotError::new)?;
-    let mut film = film(&scene, &data);
+    let mut film = Film::new(FilmSpec::of(&scene, data.digest(), false, false));
     let job = Job { crop: film.crop(), samples: 0..scene.settings.samples };
     let watch = Watch { abort: &AtomicBool::new(false), advance: &|_| {} };
     renderer.accumulate(&job, &mut film, &watch).map_err(PlotError::new)?;
@@ -39,25 +39,6 @@ pub fn profile(shading: Shading) -> Result<Profile, PlotError> {
     }
     let radiance = film.resolve().pixels.iter().map(|pixel| f64::from(pixel[1])).collect();
     Ok(Profile { radiance, triangles })
-}
-
-fn film(scene: &Scene, data: &SceneData) -> Film {
-    Film::new(FilmSpec {
-        width: scene.film.width,
-        height: scene.film.height,
-        crop: Rect::whole(scene.film.width, scene.film.height),
-        unit_exponent: scene.film.unit_exponent,
-        seed: scene.settings.seed,
-        scene_digest: data.digest(),
-        scene_name: scene.name.clone(),
-        integrator: "local".into(),
-        version: env!("CARGO_PKG_VERSION").into(),
-        transparent: false,
-        aovs: false,
-        tonemap: scene.film.tonemap,
-        exposure: scene.film.exposure,
-        gamma: scene.film.gamma,
-    })
 }
 
 /// The three profiles over the same triangles, whose edges are marked.

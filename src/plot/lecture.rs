@@ -2,10 +2,11 @@
 
 use super::curves::{self, FACETS, Interface};
 use super::edge::edge_figure;
+use super::fit::{FIT_MODELS, fit, fit_figure};
 use super::shelf::Shelf;
 use super::{Figure, PlotError, lobes};
 use crate::scene::load::toml::METALS;
-use crate::scene::{Fresnel, Scene};
+use crate::scene::{Fresnel, Material, Model, Scene};
 
 /// A row of the lecture.
 pub struct Row {
@@ -160,8 +161,8 @@ pub fn numbered(stem: &str) -> (Option<u32>, &str) {
     }
 }
 
-/// The plots of a row; `scene` is its scene, some show the materials of it.
-pub fn plots(row: u32, scene: &Scene) -> Result<Vec<Figure>, PlotError> {
+/// The plots that belong to the scene `title` of a row; some show the materials of it.
+pub fn plots(row: u32, title: &str, scene: &Scene) -> Result<Vec<Figure>, PlotError> {
     let shelf = || Shelf::of(scene).map_err(PlotError::new);
     let shown = |shelf: &Shelf| (0..shelf.names().len()).filter(|i| shelf.reflects(*i)).collect::<Vec<_>>();
     let of_shelf = |figures: &dyn Fn(&Shelf, &[usize]) -> Vec<Figure>| {
@@ -169,31 +170,73 @@ pub fn plots(row: u32, scene: &Scene) -> Result<Vec<Figure>, PlotError> {
         let materials = shown(&shelf);
         Ok(figures(&shelf, &materials))
     };
-    match row {
-        2 => Ok(vec![curves::cos_power_figure(&[1.0, 8.0, 64.0])]),
-        3 => of_shelf(&|shelf, materials| vec![lobes::cartesian_figure(shelf, materials, 45.0)]),
-        6 => Ok(vec![curves::tone_figure(0.0)]),
-        7 => of_shelf(&|shelf, materials| {
+    match (row, title) {
+        (1, _) => of_shelf(&|shelf, materials| vec![lobes::polar_figure(shelf, materials, 45.0)]),
+        (2, _) => Ok(vec![curves::cos_power_figure(&[1.0, 8.0, 64.0])]),
+        (3, _) => of_shelf(&|shelf, materials| vec![lobes::cartesian_figure(shelf, materials, 45.0)]),
+        (5, "attenuation") => Ok(vec![curves::attenuation_figure(curves::CAPPED)]),
+        (6, _) => Ok(vec![curves::tone_figure(0.0)]),
+        (7, _) => of_shelf(&|shelf, materials| {
             let bodies = materials.chunks(3).map(|three| lobes::bodies_figure(shelf, three, 45.0));
             std::iter::once(lobes::polar_figure(shelf, materials, 45.0)).chain(bodies).collect()
         }),
-        8 => Ok(vec![edge_figure()?]),
-        10 => of_shelf(&|shelf, materials| vec![lobes::cartesian_figure(shelf, materials, 60.0)]),
-        14 => of_shelf(&|shelf, materials| {
+        (8, _) => Ok(vec![edge_figure()?]),
+        (9, _) => fits(scene, &shelf()?),
+        (10, _) => of_shelf(&|shelf, materials| vec![lobes::cartesian_figure(shelf, materials, 60.0)]),
+        (14, _) => of_shelf(&|shelf, materials| {
             let kinds = by_kind(shelf.names(), materials);
             kinds.iter().map(|kind| lobes::cartesian_figure(shelf, kind, 60.0)).collect()
         }),
-        15 => Ok(vec![
+        (15, _) => Ok(vec![
             curves::distribution_figure(&FACETS[..1], &[0.2, 0.3, 0.4, 0.6]),
             curves::distribution_figure(&FACETS, &[0.3]),
         ]),
-        16 => Ok(vec![curves::masking_figure(&[0.0, 30.0, 60.0], 0.6)]),
-        17 => Ok(vec![curves::fresnel_figure(&metals()), curves::ramp_figure(&metals())]),
-        18 => of_shelf(&|shelf, materials| vec![lobes::albedo_figure(shelf, materials)]),
-        21 => Ok(vec![curves::spot_figure(&[1.0, 8.0, 64.0], 40.0)]),
-        23 => Ok(vec![curves::fresnel_figure(&[Interface::dielectric(1.5), Interface::dielectric(2.417)])]),
+        (16, _) => Ok(vec![curves::masking_figure(&[0.0, 30.0, 60.0], 0.6)]),
+        (17, _) => Ok(vec![
+            curves::fresnel_figure(&metals()),
+            curves::ramp_figure(&metals()),
+            curves::ramp_figure(&metals()[..1]),
+        ]),
+        (18, _) => of_shelf(&|shelf, materials| vec![lobes::albedo_figure(shelf, materials)]),
+        (19, "coupled") => of_shelf(&|shelf, materials| {
+            let glossy = |index: &&usize| scene.materials[**index].model != Model::Lambert;
+            vec![lobes::albedo_figure(shelf, &materials.iter().filter(glossy).copied().collect::<Vec<_>>())]
+        }),
+        (19, "anisotropy") => of_shelf(&|shelf, materials| {
+            let rough = |index: &&usize| is_rough_metal(&scene.materials[**index]);
+            vec![lobes::bodies_figure(shelf, &materials.iter().filter(rough).copied().collect::<Vec<_>>(), 45.0)]
+        }),
+        (19, "interreflection") => Ok(vec![before_and_after(scene)?]),
+        (21, "directed") => Ok(vec![curves::spot_figure(&[1.0, 8.0, 64.0], 40.0)]),
+        (23, "glass") => Ok(vec![curves::fresnel_figure(&[Interface::dielectric(1.5), Interface::dielectric(2.417)])]),
+        (26, "zone-plate") => Ok(vec![curves::filter_figure()]),
         _ => Ok(Vec::new()),
     }
+}
+
+fn is_rough_metal(material: &Material) -> bool {
+    matches!(material.model, Model::RoughConductor { .. })
+}
+
+/// The scene's first rough metal at any roughness, without and with what its facets send to each other.
+fn before_and_after(scene: &Scene) -> Result<Figure, PlotError> {
+    let metal = |compensated: bool, name: &str| {
+        let mut metal = scene.materials.iter().find(|material| is_rough_metal(material)).cloned();
+        if let Some(Model::RoughConductor { compensate, .. }) = metal.as_mut().map(|metal| &mut metal.model) {
+            *compensate = compensated;
+        }
+        metal.map(|metal| Material { name: name.into(), ..metal })
+    };
+    let metals: Vec<Material> = metal(false, "before").into_iter().chain(metal(true, "after")).collect();
+    lobes::albedo_by_roughness_figure(&metals, &[0.0, 60.0]).map_err(PlotError::new)
+}
+
+/// What is fitted to the scene's first measured material (row 10 beside row 9).
+fn fits(scene: &Scene, shelf: &Shelf) -> Result<Vec<Figure>, PlotError> {
+    let measured = |material: &Material| matches!(material.model, Model::Measured { .. });
+    let Some(index) = scene.materials.iter().position(measured) else { return Ok(Vec::new()) };
+    let fitting = fit(shelf, index, &FIT_MODELS.map(|(_, model)| model)).map_err(PlotError::new)?;
+    Ok(vec![fit_figure(scene, index, &fitting, 45.0, true).map_err(PlotError::new)?])
 }
 
 /// Materials whose names begin with the same word before a comma, as in "copper, Phong"; those without a comma in none.

@@ -166,22 +166,38 @@ fn project(p: DVec3) -> [f64; 3] {
     [0.5 + 0.46 * x, 0.4 + 0.46 * up, near]
 }
 
-/// The facets of one body, farthest first, and its largest value.
+/// The facets of one body, farthest first, and its largest value. What is transmitted hangs below the surface, pale as if
+/// seen through it.
 fn solid(shelf: &Shelf, index: usize, theta: f64, color: Color) -> (Vec<Facet>, f64) {
     let wi = direction(-theta);
+    let value = |w: DVec3| shelf.eval(index, w.as_vec3(), wi) / f64::from(wi.z);
+    let [above, below] = [1.0, -1.0].map(|side| shell(side, &value));
+    let largest = above.iter().chain(&below).flatten().map(|p| p.length()).fold(0.0, f64::max);
+    // Within the disc, so that the light is seen to come in.
+    let scale = if largest > 0.0 { 0.8 / largest } else { 0.0 };
+    let mut facets = vec![disc()];
+    if below.iter().flatten().any(|p| *p != DVec3::ZERO) {
+        facets.extend(farthest_first(shaded(&below, scale, color.map(|c| c / 2 + 118))));
+    }
+    let mut upper = shaded(&above, scale, color);
+    upper.extend(arrow(theta));
+    facets.extend(farthest_first(upper));
+    (facets, largest)
+}
+
+/// Directions of the upper (`side` 1) or lower (-1) hemisphere, each as long as its value.
+fn shell(side: f64, value: &dyn Fn(DVec3) -> f64) -> Vec<Vec<DVec3>> {
     let way = |row: usize, column: usize| {
         let (a, b) =
             (row as f64 / ROWS as f64 * 89.9f64.to_radians(), column as f64 / COLUMNS as f64 * std::f64::consts::TAU);
-        DVec3::new(libm::sin(a) * libm::cos(b), libm::sin(a) * libm::sin(b), libm::cos(a))
+        DVec3::new(libm::sin(a) * libm::cos(b), libm::sin(a) * libm::sin(b), side * libm::cos(a))
     };
-    let value = |w: DVec3| shelf.eval(index, w.as_vec3(), wi) / f64::from(wi.z);
-    let grid: Vec<Vec<DVec3>> =
-        (0..=ROWS).map(|row| (0..=COLUMNS).map(|column| way(row, column)).map(|w| w * value(w)).collect()).collect();
-    let largest = grid.iter().flatten().map(|p| p.length()).fold(0.0, f64::max);
-    // Within the disc, so that the light is seen to come in.
-    let scale = if largest > 0.0 { 0.8 / largest } else { 0.0 };
-    let mut facets = vec![(f64::MIN, disc())];
-    facets.extend(arrow(theta));
+    (0..=ROWS).map(|row| (0..=COLUMNS).map(|column| way(row, column)).map(|w| w * value(w)).collect()).collect()
+}
+
+/// The facets between a grid's points, with their depths.
+fn shaded(grid: &[Vec<DVec3>], scale: f64, color: Color) -> Vec<(f64, Facet)> {
+    let mut facets = Vec::new();
     for row in 0..ROWS {
         for column in 0..COLUMNS {
             let corners = [[row, column], [row + 1, column], [row + 1, column + 1], [row, column + 1]]
@@ -199,8 +215,12 @@ fn solid(shelf: &Shelf, index: usize, theta: f64, color: Color) -> (Vec<Facet>, 
             facets.push((depth, facet));
         }
     }
+    facets
+}
+
+fn farthest_first(mut facets: Vec<(f64, Facet)>) -> impl Iterator<Item = Facet> {
     facets.sort_by(|a, b| a.0.total_cmp(&b.0));
-    (facets.into_iter().map(|(_, facet)| facet).collect(), largest)
+    facets.into_iter().map(|(_, facet)| facet)
 }
 
 /// The surface.

@@ -65,7 +65,9 @@ fn svg(figure: &Figure, size: [u32; 2]) -> Result<String> {
     // The view box keeps the fine units; the picture has the size that was asked for.
     let fine = format!("width=\"{width}\" height=\"{height}\"");
     debug_assert!(text.contains(&fine), "{}", &text[..text.len().min(200)]);
-    Ok(text.replacen(&fine, &format!("width=\"{}\" height=\"{}\"", size[0], size[1]), 1))
+    let text = text.replacen(&fine, &format!("width=\"{}\" height=\"{}\"", size[0], size[1]), 1);
+    // Smoothed one by one, polygons beside each other would show seams.
+    Ok(text.replacen('>', "><style>polygon{shape-rendering:crispEdges}</style>", 1))
 }
 
 fn png(figure: &Figure, size: [u32; 2]) -> Result<Vec<u8>> {

@@ -18,6 +18,8 @@ pub struct Entry {
     pub pictures: Vec<(Option<String>, Vec<u8>)>,
     /// Pictures in a row, where there is room for them.
     pub columns: usize,
+    /// SVG files.
+    pub plots: Vec<String>,
     /// The scene file.
     pub text: String,
 }
@@ -25,8 +27,6 @@ pub struct Entry {
 /// A part of the page: a row of the lecture, or a scene that belongs to none.
 pub struct Part {
     pub entries: Vec<Entry>,
-    /// SVG files.
-    pub plots: Vec<String>,
 }
 
 impl Part {
@@ -66,14 +66,20 @@ math{font-family:'STIX Two Math','Cambria Math','Latin Modern Math','DejaVu Math
 figure{margin:0}figcaption{text-align:center;font-size:.95rem;line-height:1.3;padding:.2rem 0}\
 img,svg{display:block;max-width:100%;height:auto;margin:0 auto}\
 .panels.several img{width:100%}\
-.plots{display:grid;gap:1rem;grid-template-columns:repeat(auto-fit,minmax(min(100%,30rem),1fr));margin:1rem 0}\
-.plot{overflow-x:auto}.plot svg{min-width:30rem}\
-@media(max-width:40rem){.panels{grid-template-columns:repeat(var(--narrow),minmax(0,1fr));gap:.3rem}figcaption{font-size:.8rem}}\
+.plots{display:grid;gap:1rem;grid-template-columns:repeat(auto-fit,minmax(min(100%,28rem),1fr));margin:1rem 0}\
+@media(max-width:40rem){math{font-size:.88rem}.panels{grid-template-columns:repeat(var(--narrow),minmax(0,1fr));gap:.3rem}figcaption{font-size:.8rem}}\
 pre{overflow-x:auto;background:#f4f4f4;padding:.7rem;font-size:.85rem;line-height:1.4}summary{cursor:pointer;color:#555}";
 
 /// Text as HTML shows it.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// Text whose words between backticks are code.
+fn quoted(text: &str) -> String {
+    let parts = escaped(text);
+    let part = |(i, part): (usize, &str)| if i % 2 == 1 { format!("<code>{part}</code>") } else { part.to_owned() };
+    parts.split('`').enumerate().map(part).collect()
 }
 
 /// A formula in LaTeX as MathML. What is no LaTeX is shown in red.
@@ -117,11 +123,6 @@ fn section(part: &Part) -> String {
         }
         html.push_str(&scene(entry));
     }
-    // A narrow screen scrolls plots: smaller, their words could not be read.
-    let plots: String = part.plots.iter().map(|plot| format!("<div class=\"plot\">{plot}</div>\n")).collect();
-    if !plots.is_empty() {
-        html.push_str(&format!("<div class=\"plots\">\n{plots}</div>\n"));
-    }
     html + "</section>\n"
 }
 
@@ -130,10 +131,10 @@ fn scene(entry: &Entry) -> String {
     let several = if entry.pictures.len() > 1 { " several" } else { "" };
     let columns = entry.columns.clamp(1, entry.pictures.len().max(1));
     // On a telephone three small ones side by side compare better than large ones below each other.
-    let narrow = if columns > 3 { 2 } else { columns };
+    let narrow = if columns > 3 { columns.div_ceil(2) } else { columns };
     let mut html = format!(
         "<p>{}</p>\n<div class=\"panels{several}\" style=\"--columns:{columns};--narrow:{narrow}\">\n",
-        escaped(&entry.caption)
+        quoted(&entry.caption)
     );
     for (label, png) in &entry.pictures {
         let label = label.as_deref().map(escaped);
@@ -144,8 +145,10 @@ fn scene(entry: &Entry) -> String {
             "<figure><img alt=\"{alt}\" src=\"data:image/png;base64,{picture}\">{caption}</figure>\n"
         ));
     }
-    html + &format!(
-        "</div>\n<details>\n<summary>{name}.toml</summary>\n<pre>{}</pre>\n</details>\n",
-        escaped(&entry.text)
-    )
+    html.push_str("</div>\n");
+    let plots: String = entry.plots.iter().map(|plot| format!("<div class=\"plot\">{plot}</div>\n")).collect();
+    if !plots.is_empty() {
+        html.push_str(&format!("<div class=\"plots\">\n{plots}</div>\n"));
+    }
+    html + &format!("<details>\n<summary>{name}.toml</summary>\n<pre>{}</pre>\n</details>\n", escaped(&entry.text))
 }

@@ -1,10 +1,10 @@
 //! One picture on several renderers at once, each on a thread of its own.
 //!
 //! Samples are handed out in ranges, in ascending order, to whoever is free; a range is as long as its renderer should take
-//! half a second for. Each adds to a film of its own, and integer sums do not care who adds what: the picture is the one
-//! that any of them would have made alone. What a renderer that fails has not finished goes to the others. When nothing is
-//! left to hand out, whoever is free does the range again of which the end is farthest away, if it can be sooner; the first to
-//! finish counts, so a slow device never makes a picture late.
+//! half a second for, or a few seconds while that is only a few samples. Each adds to a film of its own, and integer sums
+//! do not care who adds what: the picture is the one that any of them would have made alone. What a renderer that fails has
+//! not finished goes to the others. When nothing is left to hand out, whoever is free does the range again of which the end
+//! is farthest away, if it can be sooner; the first to finish counts, so a slow device never makes a picture late.
 
 use super::{Counters, Job, RenderError, Renderer, Watch};
 use crate::film::{Film, Rect};
@@ -15,6 +15,9 @@ use std::time::{Duration, Instant};
 
 /// Seconds that a range should take: long enough to fill a device, short enough to stop at.
 const RANGE_SECONDS: f64 = 0.5;
+/// It may take longer, up to so many seconds, to hold so many samples: those of a pixel go well together (`vulkan/plan`).
+const LONG_RANGE_SECONDS: f64 = 4.0;
+const LONG_RANGE_SAMPLES: f64 = 16.0;
 /// A range is at most this many times as long as the one before.
 const GROWTH: u32 = 4;
 /// How often one that waits looks again whether it is to stop, or could help.
@@ -168,12 +171,14 @@ impl State {
         }
     }
 
-    /// The next range for member `me`: as long as it should take `seconds` for, and no longer than its share of what is left.
-    fn take(&mut self, me: usize, end: u32, seconds: f64) -> Option<Range<u32>> {
+    /// The next range for member `me`, of no more than its share of what is left. `left`: seconds that it may take at most.
+    fn take(&mut self, me: usize, end: u32, left: f64) -> Option<Range<u32>> {
         let Pace { rate, last } = self.paces[me];
         let waiting = (end - self.next) + self.returned.iter().map(|range| range.end - range.start).sum::<u32>();
         let together: f64 = self.paces.iter().map(|pace| pace.rate).sum();
-        let wanted = (rate * seconds).min(f64::from(last) * f64::from(GROWTH));
+        let within = |seconds: f64| rate * seconds.min(left);
+        let wanted = within(RANGE_SECONDS).max(within(LONG_RANGE_SECONDS).min(LONG_RANGE_SAMPLES));
+        let wanted = wanted.min(f64::from(last) * f64::from(GROWTH));
         let fair = f64::from(waiting) * rate / together.max(rate).max(f64::MIN_POSITIVE);
         let length = wanted.min(libm::ceil(fair)).max(1.0) as u32;
         let mut range = match self.returned.pop() {
@@ -254,8 +259,7 @@ impl<'a> Desk<'a> {
             if state.broken || is_over && (state.begun || !state.running.is_empty()) {
                 return None;
             }
-            let seconds = left.map_or(RANGE_SECONDS, |left| left.min(RANGE_SECONDS));
-            if let Some(samples) = state.take(me, self.order.samples.end, seconds) {
+            if let Some(samples) = state.take(me, self.order.samples.end, left.unwrap_or(f64::INFINITY)) {
                 return Some(state.begin(me, samples));
             }
             if state.running.is_empty() {

@@ -6,8 +6,8 @@
 use crate::layout::{DISTRIBUTION_BECKMANN, DISTRIBUTION_GAUSSIAN, DISTRIBUTION_PHONG, DISTRIBUTION_TROWBRIDGE_REITZ};
 use crate::shading::lobe::{COS_MIN, cos_power, pdf_cos_power, sample_cos_power};
 use crate::shading::math::{
-    HALF_PI, INV_PI, INV_TWO_PI, PI, atan2_, clamp_, cos_, cos_turns, div, dot3, exp_, log_, max_, min_, normalize3,
-    rcp, rsqrt, sin_, sin_turns, sqrt_,
+    HALF_PI, INV_PI, INV_TWO_PI, PI, atan2_, clamp_, cos_, cos_turns, div, dot3, exp_, log_, max_, min_, mix_,
+    normalize3, rcp, rsqrt, sin_, sin_turns, sqrt_,
 };
 use crate::shading::microfacet::{EXPONENT_MAX, M_MIN};
 use glam::{Vec2, Vec3};
@@ -97,25 +97,31 @@ pub fn stretched_sine(alpha_u: f32, alpha_v: f32, w: Vec3) -> f32 {
 }
 
 /// Smith's Lambda of a direction, >= 0: 1 / (1 + Lambda) of the facets that face `w` are seen from there. |w.z| > 0.
-/// Exact for Trowbridge and Reitz; for Beckmann (and, as Walter, for the others) the rational fit, within .35 %.
+/// Exact for Trowbridge and Reitz; for Beckmann (and the Gaussian, whose own has no closed form) the rational fit, within .35 %.
+/// Phong's slopes are Student's (Ribardiere et al. 2017) with Lambda = C (tan sin^(n+1) / (n+1) - the integral of sin^(n+1) up
+/// to theta), C its inverse over 0..pi: Trowbridge and Reitz's at n = 0, Beckmann's for n without bound, and between the two
+/// their mean by 1 / (n + 1), whose 1 / (1 + Lambda) is within 1 %.
 /// Source: Walter et al. 2007, equations 15 and 34; Heitz 2014.
 #[inline]
 pub fn smith_lambda(kind: u32, alpha_u: f32, alpha_v: f32, w: Vec3) -> f32 {
     let cos_w = w.z.abs();
-    let across = stretched_sine(
-        alpha_u,
-        if kind == DISTRIBUTION_BECKMANN || kind == DISTRIBUTION_TROWBRIDGE_REITZ { alpha_v } else { alpha_u },
-        w,
-    );
+    let a_u = if kind == DISTRIBUTION_PHONG { min_(alpha_u, 1.0) } else { alpha_u };
+    let along_both = kind == DISTRIBUTION_BECKMANN || kind == DISTRIBUTION_TROWBRIDGE_REITZ;
+    let across = stretched_sine(a_u, if along_both { alpha_v } else { a_u }, w);
+    let t = div(across, max_(cos_w, COS_MIN));
+    let long_tailed = 0.5 * (sqrt_(1.0 + t * t) - 1.0);
     if kind == DISTRIBUTION_TROWBRIDGE_REITZ {
-        let t = div(across, max_(cos_w, COS_MIN));
-        return 0.5 * (sqrt_(1.0 + t * t) - 1.0);
+        return long_tailed;
     }
-    if cos_w >= 1.6 * across {
-        return 0.0;
+    let mut short_tailed: f32 = 0.0;
+    if cos_w < 1.6 * across {
+        let a = div(max_(cos_w, COS_MIN), across);
+        short_tailed = div(1.0 + a * (-1.259 + a * 0.396), a * (3.535 + a * 2.181));
     }
-    let a = div(max_(cos_w, COS_MIN), across);
-    div(1.0 + a * (-1.259 + a * 0.396), a * (3.535 + a * 2.181))
+    if kind != DISTRIBUTION_PHONG {
+        return short_tailed;
+    }
+    mix_(short_tailed, long_tailed, rcp(1.0 + phong_exponent(a_u)))
 }
 
 /// Smith's masking of one direction, 0..1.

@@ -17,8 +17,6 @@ pub const QUARTER_PI: f32 = 0.785398185;
 pub const INV_PI: f32 = 0.318309873;
 pub const INV_TWO_PI: f32 = 0.159154937;
 pub const INV_FOUR_PI: f32 = 0.0795774683;
-pub const SQRT_TWO: f32 = 1.41421354;
-pub const LN_TWO: f32 = 0.693147182;
 pub const LOG2_E: f32 = 1.44269502;
 /// 2^-100. Division and roots take anything smaller for zero.
 pub const TINY: f32 = 7.88860905e-31;

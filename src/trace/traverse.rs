@@ -6,6 +6,7 @@
 //!
 //! Three loops, one inside another, and not one loop with branches for both levels: devices that walk lanes in lockstep
 //! run every branch of a loop's body on each turn, whether a lane takes it or not, so what is rare has a loop of its own.
+//! They also postpone triangles, which lanes of their own need not: the order of tests cannot change a hit.
 
 use super::box_::{MESH_MARGIN, approx_intersect_node};
 use super::ray::{LevelRay, object_origin, prepare_ray, transform_vector, within_reach};

@@ -16,7 +16,7 @@ pub fn sample_key(header: &SceneHeader, pixel: u32, sample_index: u32, path_id: 
 
 /// Pixel of a slot, counted row by row in the crop.
 pub fn slot_pixel(batch: &Batch, slot: u32) -> u32 {
-    batch.first_pixel + slot % batch.pixel_count // integer
+    batch.first_pixel + slot / batch.sample_count // integer
 }
 
 /// The state of the sample in `slot` before its first ray is traced: filter importance sampling (Ernst, Stamminger
@@ -26,7 +26,7 @@ pub fn generate(scene: &SceneView, batch: &Batch, slot: u32) -> PathState {
     let x = batch.crop_x + index % batch.crop_width; // integer
     let y = batch.crop_y + index / batch.crop_width; // integer
     let pixel = x | (y << 16);
-    let sample_index = batch.first_sample + slot / batch.pixel_count; // integer
+    let sample_index = batch.first_sample + slot % batch.sample_count; // integer
     let key = sample_key(scene.header, pixel, sample_index, 0);
     let filter = sample_filter(scene, sample_2d(key, DIMENSION_FILTER));
     let film_x = x as f32 + 0.5 + filter.offset.x;

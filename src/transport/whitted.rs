@@ -65,38 +65,43 @@ pub fn is_refracting(material: &Material) -> bool {
 /// Without ranks media do not nest: a ray that leaves a dielectric is outside. Radiance is not scaled by eta^2 (Whitted's model).
 pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, material: &Material, queues: &mut Queues) {
     let wo = -path.ray.direction;
-    if !is_refracting(material) {
-        if is_hidden_back(surface, material, wo) {
-            return;
-        }
-        let normal = facing_normal(surface, wo);
-        let weight = mirror_weight(material, dot3(normal, wo)) * own_weight(material);
-        push_branch(scene, path, surface, mirror_direction(surface, wo), weight, LOBE_MIRROR, queues);
+    let refracting = is_refracting(material);
+    if !refracting && is_hidden_back(surface, material, wo) {
         return;
     }
+    let normal = facing_normal(surface, wo);
     let entering = dot3(surface.normal_geometric, wo) >= 0.0;
     let eta = if entering { material.eta.x } else { rcp(material.eta.x) };
-    let frame = frame_from_normal(facing_normal(surface, wo));
+    let frame = frame_from_normal(normal);
     let wo_local = to_local(frame, wo);
     let thin = material.model == MODEL_THIN_DIELECTRIC;
-    let reflectance =
-        if thin { thin_reflectance(wo_local.z, material.eta.x) } else { fresnel_dielectric(wo_local.z, eta) };
-    push_branch(scene, path, surface, mirror_direction(surface, wo), Vec4::splat(reflectance), LOBE_MIRROR, queues);
-    let weight = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
-    if thin {
-        push_branch(scene, path, surface, path.ray.direction, weight, LOBE_REFRACT, queues);
+    let mut reflectance = 0.0;
+    let reflected = if refracting {
+        reflectance =
+            if thin { thin_reflectance(wo_local.z, material.eta.x) } else { fresnel_dielectric(wo_local.z, eta) };
+        Vec4::splat(reflectance)
+    } else {
+        mirror_weight(material, dot3(normal, wo)) * own_weight(material)
+    };
+    push_branch(scene, path, surface, mirror_direction(surface, wo), reflected, LOBE_MIRROR, queues);
+    if !refracting {
         return;
     }
-    let refraction = refract_local(wo_local, eta);
-    if refraction.total {
-        return;
-    }
+    let refracted = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
     let mut inside = *path;
-    inside.eta = if entering { material.eta.x } else { 1.0 };
-    inside.absorption = if entering { material.absorption } else { Vec3::ZERO };
-    if scene.header.nested != 0 {
-        inside.interior = cross_interface(path.interior, material, entering);
-        inside.absorption = medium_absorption(scene, inside.interior);
+    let mut wi = path.ray.direction;
+    if !thin {
+        let refraction = refract_local(wo_local, eta);
+        if refraction.total {
+            return;
+        }
+        wi = to_world(frame, refraction.wt);
+        inside.eta = if entering { material.eta.x } else { 1.0 };
+        inside.absorption = if entering { material.absorption } else { Vec3::ZERO };
+        if scene.header.nested != 0 {
+            inside.interior = cross_interface(path.interior, material, entering);
+            inside.absorption = medium_absorption(scene, inside.interior);
+        }
     }
-    push_branch(scene, &inside, surface, to_world(frame, refraction.wt), weight, LOBE_REFRACT, queues);
+    push_branch(scene, &inside, surface, wi, refracted, LOBE_REFRACT, queues);
 }

@@ -73,6 +73,22 @@ fn primary_rays_are_as_many_as_the_frame_has_pixels_and_the_others_as_many() {
 }
 
 #[test]
+fn baking_takes_no_more_memory_than_two_and_a_half_times_what_it_makes() {
+    let folder = Folder::new();
+    let args = ["bench", "terrain:1M", "--on", "cpu", "--only", "primary", "--json", "out.json"];
+    folder.done(&[&args, &FEW[..]].concat());
+    let scene = &json(&folder, "out.json")["scenes"][0];
+    let Some(taken) = scene["bake_bytes"].as_u64() else {
+        eprintln!("SKIPPED: the system does not tell how much memory a program has");
+        return;
+    };
+    let size = &scene["size"];
+    let made: u64 = ["node_bytes", "triangle_bytes", "data_bytes"].iter().filter_map(|key| size[key].as_u64()).sum();
+    assert!(made > 80_000_000 && taken > made, "{made} bytes made, {taken} taken");
+    assert!(2 * taken <= 5 * made, "{made} bytes made, {taken} taken");
+}
+
+#[test]
 fn json_of_one_run_is_the_baseline_of_the_next() {
     let folder = Folder::new();
     let args = [&["bench", "scene.toml", "--on", "cpu", "--only", "primary,images"], &FEW[..]].concat();

@@ -12,3 +12,4 @@ mod render;
 mod signals;
 mod support;
 mod team;
+mod verify;

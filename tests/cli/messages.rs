@@ -55,9 +55,9 @@ fn bad_scene_exits_with_65_and_says_where_and_what_was_meant() {
     let message = folder.fails(65, &["render", "bad.toml"]);
     assert_eq!(message, "error: bad.toml:3:1: unknown key \"smaples\"; did you mean \"samples\"?\n");
     let mut piped = folder.command(&["render", "-"]);
-    let Ended { code, stderr, .. } = ended(piped.write_stdin("[render]\nsmaples = 2\n"));
+    let Ended { code, stderr, .. } = ended(piped.write_stdin(folder.bytes("bad.toml")));
     assert_eq!(code, Some(65));
-    assert!(stderr.starts_with("error: <stdin>:2:1: unknown key \"smaples\""), "{stderr}");
+    assert!(stderr.starts_with("error: <stdin>:3:1: unknown key \"smaples\""), "{stderr}");
 }
 
 #[test]

@@ -12,7 +12,7 @@ fn device_agrees_with_the_cpu_through_both_fetch_paths() {
     let lines: Vec<&str> = out.lines().collect();
     assert_eq!(lines.len(), 2, "{out}");
     for (line, path) in lines.iter().zip(["vulkan texel", "vulkan storage"]) {
-        assert!(line.starts_with("scene.toml: 0 of 192 pixels differ (16x12, 1 samples, seed 0; cpu and "), "{line}");
+        assert!(line.starts_with("scene.toml: 0 of 192 pixels differ (16x12, 1 sample, seed 0; cpu and "), "{line}");
         assert!(line.contains(path), "{line}");
     }
 }

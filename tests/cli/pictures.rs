@@ -169,7 +169,8 @@ fn the_camera_of_a_staged_mesh_knows_the_frame_it_is_framed_for() {
 #[test]
 fn output_takes_the_scenes_name_if_none_is_given() {
     let folder = Folder::new();
-    folder.cpu(&["render", "scene.toml"]);
+    let report = folder.cpu(&["render", "scene.toml"]);
+    assert_eq!(line(&report, "picture"), "scene.png", "{report}");
     assert_eq!(folder.names(), ["scene.png", "scene.toml"]);
     let mut piped = folder.command(&["render", "-", "--backend", "cpu"]);
     assert_eq!(ended(piped.write_stdin(super::support::SCENE)).code, Some(0));

@@ -20,16 +20,22 @@ impl Drop for Running {
 impl Running {
     /// A render that would take days, once it has begun.
     fn render(folder: &Folder, output: &str, device: &str) -> Self {
+        let running = Self::until(folder, "rendering on cpu", &["scene.toml", "--device", device, "-o", output]);
+        std::thread::sleep(Duration::from_millis(300));
+        running
+    }
+
+    /// Once it has said what begins like `word`.
+    fn until(folder: &Folder, word: &str, args: &[&str]) -> Self {
         let mut command = Command::new(program());
-        command.args(["render", "scene.toml", "--device", device, "--spp", "16777216", "--verbose", "-o", output]);
+        command.args(["render", "--spp", "16777216", "--verbose"]).args(args);
         let child = command.current_dir(folder.path("")).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
         let mut running = Self(child.expect("the program starts"));
         let stderr = running.0.stderr.take().expect("piped");
         let mut lines = BufReader::new(stderr).lines();
-        assert!(lines.any(|line| line.is_ok_and(|line| line.starts_with("rendering on cpu"))), "it never began");
+        assert!(lines.any(|line| line.is_ok_and(|line| line.starts_with(word))), "it never began");
         // Keeps the pipe open and empty, or the next message would meet a closed one.
         std::thread::spawn(move || lines.for_each(drop));
-        std::thread::sleep(Duration::from_millis(300));
         running
     }
 
@@ -49,6 +55,24 @@ impl Running {
             std::thread::sleep(Duration::from_millis(20));
         }
     }
+}
+
+#[test]
+fn ctrl_c_before_there_is_anything_to_save_ends_at_once_and_leaves_nothing() {
+    let folder = Folder::new();
+    let mut command = Command::new(program());
+    // The largest terrain there is: it takes far longer to make than this test waits.
+    command.args(["render", "terrain:33554432", "--device", "cpu", "-o", "a.png"]).current_dir(folder.path(""));
+    let mut render = Running(command.stderr(Stdio::null()).spawn().expect("the program starts"));
+    let start = Instant::now();
+    while folder.names().len() < 2 {
+        assert!(start.elapsed() < Duration::from_secs(20), "it never began");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(folder.names()[0].ends_with(".part"), "{:?}", folder.names());
+    render.signal("-INT");
+    assert_eq!(render.ends().code(), Some(130));
+    assert_eq!(folder.names(), ["scene.toml"]);
 }
 
 /// Interrupts a render on `device`.
@@ -75,6 +99,17 @@ fn ctrl_c_ends_all_devices_on_whole_passes() {
     if has_device() {
         ctrl_c_saves_what_was_finished("all");
     }
+}
+
+#[test]
+fn ctrl_c_while_a_large_scene_is_baked_ends_it_and_leaves_nothing() {
+    let folder = Folder::new();
+    let mut render = Running::until(&folder, "terrain: baking", &["terrain:2M", "-o", "a.png"]);
+    let sent = Instant::now();
+    render.signal("-INT");
+    assert_eq!(render.ends().code(), Some(130));
+    assert!(sent.elapsed() < Duration::from_secs(5), "{:?}", sent.elapsed());
+    assert_eq!(folder.names(), ["scene.toml"]);
 }
 
 #[test]

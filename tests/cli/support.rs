@@ -1,6 +1,10 @@
 //! A folder with a scene in it, and the program.
 
+#[path = "../common/assets.rs"]
+mod assets;
+
 use assert_cmd::Command;
+pub use assets::asset;
 use gonio::film::read::{Picture, read_film, read_picture};
 use gonio::film::{Film, Rect};
 use std::path::{Path, PathBuf};
@@ -171,19 +175,6 @@ pub fn has_device() -> bool {
             assert!(!required, "GONIO_REQUIRE_DEVICE=1, but: {error}");
             println!("SKIPPED: no Vulkan device ({error})");
             false
-        }
-    }
-}
-
-/// A file or folder of the third-party assets; says so where it is absent.
-pub fn asset(name: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("GONIO_ASSETS").map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
-    // Commands run elsewhere.
-    match root.join(name).canonicalize() {
-        Ok(path) => Some(path),
-        Err(_) => {
-            println!("SKIPPED: no {name} in the assets");
-            None
         }
     }
 }

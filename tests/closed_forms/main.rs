@@ -11,50 +11,49 @@ mod nested;
 mod panes;
 #[path = "../common/scenes.rs"]
 mod scenes;
+#[path = "../common/statistics.rs"]
+mod statistics;
 
 use glam::Vec3;
 use gonio::bake::bake;
 use gonio::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
 use gonio::scene::*;
 use scenes::{assert_same, render, render_cpu};
+use statistics::Mean;
 
 /// The picture on the CPU backend.
 fn picture(scene: &Scene) -> Vec<[f32; 4]> {
     render_cpu(scene, &bake(scene).expect("bakes")).resolve().pixels
 }
 
-/// Mean of a channel over the picture, and its standard error: pixels are independent of one another.
-#[derive(Clone, Copy, Debug)]
-struct Mean {
-    value: f64,
-    error: f64,
-}
-
-fn mean_of(values: Vec<f64>) -> Mean {
-    let count = values.len() as f64;
-    let value = values.iter().sum::<f64>() / count;
-    let variance = values.iter().map(|v| (v - value) * (v - value)).sum::<f64>() / (count - 1.0);
-    Mean { value, error: (variance / count).sqrt() }
-}
-
 /// Of the green channel.
 fn mean(scene: &Scene) -> Mean {
-    mean_of(picture(scene).iter().map(|pixel| f64::from(pixel[1])).collect())
+    Mean::of_channel(&picture(scene), 1)
 }
 
-/// Five standard errors, one in two million, and 2e-5 of the value for rounding.
+/// 2e-5 of the value for rounding.
 #[track_caller]
 fn assert_mean(found: Mean, wanted: f64, what: &str) {
-    let tolerance = 5.0 * found.error + 2.0e-5 * wanted;
-    assert!((found.value - wanted).abs() <= tolerance, "{what}: {found:?} instead of {wanted}");
+    found.assert_is(wanted, 2.0e-5, what);
 }
+
+/// A memory path of the device, and the most rays a chunk may have.
+type Path = (FetchChoice, Option<u32>);
+const ANY_CHUNK: Path = (FetchChoice::Texel, None);
+const SMALL_CHUNKS: Path = (FetchChoice::Storage, Some(100));
 
 /// Both memory paths of the device, with chunks of any size and very small ones, give the CPU's bits. False without a device.
 #[track_caller]
 fn same_on_the_device(scene: &Scene, what: &str) -> bool {
+    same_by(scene, &[ANY_CHUNK, SMALL_CHUNKS], what)
+}
+
+/// The device gives the CPU's bits by each of `paths`. False without a device.
+#[track_caller]
+fn same_by(scene: &Scene, paths: &[Path], what: &str) -> bool {
     let data = bake(scene).expect("bakes");
     let reference = render_cpu(scene, &data);
-    for (fetch, chunk) in [(FetchChoice::Texel, None), (FetchChoice::Storage, Some(100))] {
+    for &(fetch, chunk) in paths {
         if device::context().is_none() {
             return false;
         }

@@ -1,7 +1,7 @@
 //! A thousand point lights.
 
 use super::common::{Random, empty_scene};
-use super::{level, light, look_down, matte, mean_of, picture, same_on_the_device};
+use super::{Mean, level, light, look_down, matte, picture, same_on_the_device};
 use glam::{DVec3, Vec3};
 use gonio::scene::*;
 use std::f64::consts::PI;
@@ -59,8 +59,8 @@ fn paths_sample_a_thousand_lights_by_their_power() {
     let mut scene = ballroom(Integrator::Path);
     scene.settings.samples = 64;
     let pixels = picture(&scene);
-    let ratios = pixels.iter().enumerate().map(|(index, pixel)| f64::from(pixel[0]) / radiance(&scene, index));
-    let found = mean_of(ratios.collect());
+    let ratio = |(index, pixel): (usize, &[f32; 4])| f64::from(pixel[0]) / radiance(&scene, index);
+    let found = Mean::of(&pixels.iter().enumerate().map(ratio).collect::<Vec<f64>>());
     assert!((found.value - 1.0).abs() < 5.0 * found.error + 1e-3, "{found:?}");
     // Ten lamps of a thousand give nearly all light: chosen evenly, the error of 16,384 samples would be 8 %.
     assert!(found.error < 0.01, "{found:?}");

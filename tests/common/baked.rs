@@ -5,15 +5,20 @@ mod common;
 
 use gonio::bake::{SceneData, bake};
 use gonio::layout::{self, SceneView};
-use gonio::scene::{Geometry, Material, Transform};
+use gonio::scene::{Geometry, Material, Table, Transform};
 
 /// A scene of one sphere of the material.
 pub struct Baked(SceneData);
 
 impl Baked {
     pub fn new(material: Material) -> Self {
+        Self::with(material, Vec::new())
+    }
+
+    /// The same of a material that may name tables.
+    pub fn with(material: Material, tables: Vec<Table>) -> Self {
         let mut scene = common::empty_scene();
-        scene.materials = vec![material];
+        (scene.materials, scene.tables) = (vec![material], tables);
         scene.objects = vec![common::object(Geometry::Sphere, Transform::default())];
         Self(bake(&scene).expect("a material that can be baked"))
     }

@@ -2,6 +2,9 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
 use glam::{Vec2, Vec3};
+use gonio::layout::{Material, SceneView};
+use gonio::shading::bsdf::{BsdfSample, SAMPLE_DELTA};
+use gonio::shading::material::{pdf_material, sample_material};
 
 /// Random numbers for tests: SplitMix64 (Steele, Lea and Flood 2014), the same on every machine.
 pub struct Random(pub u64);
@@ -144,71 +147,94 @@ const PHI_CELLS: usize = 48;
 
 /// Tests a sampler of the upper hemisphere against its density. `sample` returns None for a dropped sample; the share
 /// of those must be 1 minus the density's integral. Also returns that integral.
-pub fn test_sampler(
+pub fn test_sampler(samples: u32, sample: impl FnMut() -> Option<Vec3>, pdf: &dyn Fn(Vec3) -> f64) -> (ChiSquare, f64) {
+    test_cells(0, samples, sample, pdf)
+}
+
+/// Tests a sampler of directions whose cosine is at least -`below` / `Z_CELLS`.
+fn test_cells(
+    below: usize,
     samples: u32,
     mut sample: impl FnMut() -> Option<Vec3>,
     pdf: &dyn Fn(Vec3) -> f64,
 ) -> (ChiSquare, f64) {
     let tau = std::f64::consts::TAU;
-    let mut observed = vec![0u64; Z_CELLS * PHI_CELLS + 1];
+    let rows = below + Z_CELLS;
+    let mut observed = vec![0u64; rows * PHI_CELLS + 1];
     for _ in 0..samples {
         let cell = match sample() {
             Some(w) => {
-                let z = ((f64::from(w.z) * Z_CELLS as f64) as usize).min(Z_CELLS - 1);
+                let z = ((f64::from(w.z) * Z_CELLS as f64 + below as f64) as usize).min(rows - 1);
                 let turn = libm::atan2(f64::from(w.y), f64::from(w.x)) / tau;
                 let phi = (((turn - turn.floor()) * PHI_CELLS as f64) as usize).min(PHI_CELLS - 1);
                 z * PHI_CELLS + phi
             }
-            None => Z_CELLS * PHI_CELLS,
+            None => rows * PHI_CELLS,
         };
         observed[cell] += 1;
     }
-    let mut expected = vec![0.0; Z_CELLS * PHI_CELLS + 1];
+    let mut expected = vec![0.0; rows * PHI_CELLS + 1];
     let mut integral = 0.0;
-    for z in 0..Z_CELLS {
+    for z in 0..rows {
         for phi in 0..PHI_CELLS {
-            let z_range = (z as f64 / Z_CELLS as f64, (z + 1) as f64 / Z_CELLS as f64);
-            let phi_range = (tau * phi as f64 / PHI_CELLS as f64, tau * (phi + 1) as f64 / PHI_CELLS as f64);
-            let part = integrate_cell(pdf, z_range, phi_range, 3);
+            let z_range = [z, z + 1].map(|z| (z as f64 - below as f64) / Z_CELLS as f64);
+            let phi_range = [phi, phi + 1].map(|phi| tau * phi as f64 / PHI_CELLS as f64);
+            let part = integrate_cell(pdf, z_range.into(), phi_range.into(), 3);
             integral += part;
             expected[z * PHI_CELLS + phi] = part * f64::from(samples);
         }
     }
-    expected[Z_CELLS * PHI_CELLS] = (1.0 - integral).max(0.0) * f64::from(samples);
+    expected[rows * PHI_CELLS] = (1.0 - integral).max(0.0) * f64::from(samples);
     (chi_square(&observed, &expected), integral)
 }
 
-/// `test_sampler` over the whole sphere.
-pub fn test_sphere_sampler(
-    samples: u32,
-    mut sample: impl FnMut() -> Option<Vec3>,
-    pdf: &dyn Fn(Vec3) -> f64,
-) -> (ChiSquare, f64) {
-    let tau = std::f64::consts::TAU;
-    let mut observed = vec![0u64; 2 * Z_CELLS * PHI_CELLS + 1];
-    for _ in 0..samples {
-        let cell = match sample() {
-            Some(w) => {
-                let z = (((f64::from(w.z) + 1.0) * Z_CELLS as f64) as usize).min(2 * Z_CELLS - 1);
-                let turn = libm::atan2(f64::from(w.y), f64::from(w.x)) / tau;
-                let phi = (((turn - turn.floor()) * PHI_CELLS as f64) as usize).min(PHI_CELLS - 1);
-                z * PHI_CELLS + phi
-            }
-            None => 2 * Z_CELLS * PHI_CELLS,
-        };
-        observed[cell] += 1;
+/// Draws of `sample_material` for one viewer.
+pub struct Draws<'a> {
+    view: SceneView<'a>,
+    material: Material,
+    wo: Vec3,
+    samples: Vec<BsdfSample>,
+}
+
+/// The mean of a number over draws, its standard error, and the deviation of a single one.
+#[derive(Clone, Copy, Debug)]
+pub struct Mean {
+    pub value: f64,
+    pub error: f64,
+    pub deviation: f64,
+}
+
+impl<'a> Draws<'a> {
+    pub fn new(view: SceneView<'a>, material: Material, wo: Vec3, count: usize) -> Self {
+        let mut random = Random(17);
+        let draw = |_| sample_material(&view, &material, wo, random.unit2(), random.unit());
+        Self { samples: (0..count).map(draw).collect(), view, material, wo }
     }
-    let mut expected = vec![0.0; 2 * Z_CELLS * PHI_CELLS + 1];
-    let mut integral = 0.0;
-    for z in 0..2 * Z_CELLS {
-        for phi in 0..PHI_CELLS {
-            let z_range = (z as f64 / Z_CELLS as f64 - 1.0, (z + 1) as f64 / Z_CELLS as f64 - 1.0);
-            let phi_range = (tau * phi as f64 / PHI_CELLS as f64, tau * (phi + 1) as f64 / PHI_CELLS as f64);
-            let part = integrate_cell(pdf, z_range, phi_range, 3);
-            integral += part;
-            expected[z * PHI_CELLS + phi] = part * f64::from(samples);
+
+    /// How many went into a lobe of zero width.
+    pub fn deltas(&self) -> usize {
+        self.samples.iter().filter(|sample| sample.flags & SAMPLE_DELTA != 0).count()
+    }
+
+    /// The draws against `pdf_material` over the sphere, those of lobes of zero width counted as dropped; and its integral.
+    pub fn against_density(&self) -> (ChiSquare, f64) {
+        let mut samples = self.samples.iter();
+        let kept = |sample: &BsdfSample| sample.pdf > 0.0 && sample.flags & SAMPLE_DELTA == 0;
+        let next = || samples.next().filter(|sample| kept(sample)).map(|sample| sample.wi);
+        let pdf = |wi| f64::from(pdf_material(&self.view, &self.material, self.wo, wi));
+        test_cells(Z_CELLS, self.samples.len() as u32, next, &pdf)
+    }
+
+    /// The mean of `weight` over all draws, dropped ones counted as 0.
+    pub fn mean(&self, weight: impl Fn(&BsdfSample) -> f64) -> Mean {
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for sample in self.samples.iter().filter(|sample| sample.pdf > 0.0) {
+            let w = weight(sample);
+            (sum, squares) = (sum + w, squares + w * w);
         }
+        let count = self.samples.len() as f64;
+        let value = sum / count;
+        let deviation = libm::sqrt((squares / count - value * value).max(0.0));
+        Mean { value, error: deviation / libm::sqrt(count), deviation }
     }
-    expected[2 * Z_CELLS * PHI_CELLS] = (1.0 - integral).max(0.0) * f64::from(samples);
-    (chi_square(&observed, &expected), integral)
 }

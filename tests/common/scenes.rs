@@ -1,8 +1,13 @@
 //! Scenes for tests: those of the project, and third-party ones where they are at hand.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+#[path = "assets.rs"]
+mod assets;
+
+#[allow(unused_imports, reason = "each test binary uses its own part")]
+pub use assets::asset;
 use gonio::bake::{SceneData, bake};
-use gonio::film::{Film, FilmSpec, Rect};
+use gonio::film::{Film, FilmSpec};
 use gonio::render::cpu::CpuRenderer;
 use gonio::render::{Job, Renderer, Watch};
 use gonio::scene::{Scene, load};
@@ -32,18 +37,6 @@ pub fn all() -> Vec<PathBuf> {
     found
 }
 
-/// A third-party file, or None with a line that says so.
-pub fn asset(path: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("GONIO_ASSETS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/assets"), PathBuf::from);
-    let file = root.join(path);
-    if !file.exists() {
-        println!("SKIPPED: no third-party scene {path}");
-        return None;
-    }
-    Some(file)
-}
-
 /// The scene at the size and with the samples of `take`.
 pub fn taken(mut scene: Scene, take: Take) -> Scene {
     (scene.film.width, scene.film.height) = (take.width, take.height);
@@ -60,22 +53,8 @@ pub fn prepare(path: &Path, take: Take) -> (Scene, SceneData) {
 
 /// An empty film for the whole frame.
 pub fn film(scene: &Scene, data: &SceneData) -> Film {
-    Film::new(FilmSpec {
-        width: scene.film.width,
-        height: scene.film.height,
-        crop: Rect::whole(scene.film.width, scene.film.height),
-        unit_exponent: scene.film.unit_exponent,
-        seed: scene.settings.seed,
-        scene_digest: data.digest(),
-        scene_name: scene.name.clone(),
-        integrator: "test".to_owned(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        transparent: data.header.hide_background != 0,
-        aovs: data.header.aovs != 0,
-        tonemap: scene.film.tonemap,
-        exposure: scene.film.exposure,
-        gamma: scene.film.gamma,
-    })
+    let (transparent, aovs) = (data.header.hide_background != 0, data.header.aovs != 0);
+    Film::new(FilmSpec::of(scene, data.digest(), transparent, aovs))
 }
 
 /// Renders a range of samples of the whole frame.

@@ -2,8 +2,10 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
 use glam::{DVec3, Vec3};
+use gonio::scene::{DirectionalTable, Table};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
+use std::sync::Arc;
 
 /// A table's grid in gonio's own format.
 #[derive(Clone, Debug)]
@@ -58,6 +60,19 @@ impl Grid {
             values[..self.channels].iter().for_each(|value| file.extend((*value as f32).to_le_bytes()));
         }
         file
+    }
+
+    /// The table itself, grey and with azimuths of view from the light's.
+    pub fn table(&self, brdf: impl Fn(Vec3, Vec3) -> f64) -> Table {
+        let radians = |angles: &[f64]| angles.iter().map(|angle| angle.to_radians()).collect();
+        Table::Directional(Arc::new(DirectionalTable {
+            light_angles: radians(&self.light_theta),
+            light_azimuths: self.light_phi,
+            fold: self.symmetry,
+            view_angles: radians(&self.view_theta),
+            view_azimuths: self.view_phi,
+            values: self.directions().into_iter().flat_map(|[light, view]| [brdf(light, view) as f32; 3]).collect(),
+        }))
     }
 
     /// The same, its numbers as text.
@@ -119,6 +134,19 @@ pub fn merl_cell(light: DVec3, view: DVec3) -> [usize; 3] {
     let phi_d = libm::atan2(d.y, d.x).rem_euclid(PI);
     let cell = |x: f64, count: usize| ((x * count as f64) as usize).min(count - 1);
     [cell((theta_h / FRAC_PI_2).sqrt(), MERL[0]), cell(theta_d / FRAC_PI_2, MERL[1]), cell(phi_d / PI, MERL[2])]
+}
+
+/// A MERL table, grey, of a function of theta_h and theta_d at the cells' middles.
+pub fn merl_table(f: impl Fn(f64, f64) -> f64) -> Table {
+    let mut plane = Vec::new();
+    for h in 0..MERL[0] {
+        let x = (h as f64 + 0.5) / MERL[0] as f64;
+        for d in 0..MERL[1] {
+            let value = f(FRAC_PI_2 * x * x, FRAC_PI_2 * (d as f64 + 0.5) / MERL[1] as f64) as f32;
+            plane.extend([value; MERL[2]]);
+        }
+    }
+    Table::Merl { values: Arc::new(plane.repeat(3)) }
 }
 
 /// The MERL file of `brdf` of light and view at the cells' middles; -1 below the horizon, as the database has it.

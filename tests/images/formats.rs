@@ -1,6 +1,7 @@
 //! What is written is read back, by our reader and by others.
 
-use crate::{assets, encode, film_of, ramp};
+use crate::assets::asset;
+use crate::{encode, film_of, ramp};
 use gonio::film::read::{Picture, read_picture, read_picture_from};
 use gonio::film::write::{Aov, Format};
 use gonio::film::{FilmError, FilmSpec};
@@ -257,7 +258,7 @@ fn files_that_cannot_be_read_are_named() {
 
 #[test]
 fn the_png_suite_is_read_and_its_broken_files_are_refused() {
-    let Some(assets) = assets() else { return };
+    let Some(assets) = asset("") else { return };
     let (mut read, mut refused) = (0, 0);
     for entry in std::fs::read_dir(assets.join("images/pngsuite")).unwrap() {
         let path = entry.unwrap().path();
@@ -279,7 +280,7 @@ fn the_png_suite_is_read_and_its_broken_files_are_refused() {
 
 #[test]
 fn exr_files_of_other_programs_are_read() {
-    let Some(assets) = assets() else { return };
+    let Some(assets) = asset("") else { return };
     let mut read = 0;
     for entry in std::fs::read_dir(assets.join("images/exr-testimages")).unwrap() {
         let path = entry.unwrap().path();

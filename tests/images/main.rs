@@ -1,5 +1,7 @@
 //! Pictures: display, files of every format, output files, comparison.
 
+#[path = "../common/assets.rs"]
+mod assets;
 mod comparing;
 mod display;
 mod formats;
@@ -9,7 +11,6 @@ use gonio::film::write::{Aov, Format, Picture};
 use gonio::film::{Film, FilmSpec, Rect, sum_record};
 use gonio::layout::AovPixel;
 use gonio::scene::ToneMap;
-use std::path::PathBuf;
 
 /// A film of one sample whose pixels are `pixels`, multiples of 2^-22, in a frame around it.
 fn film_of(width: u32, pixels: &[[f32; 4]], change: impl Fn(&mut FilmSpec)) -> Film {
@@ -62,14 +63,4 @@ fn encode(film: &Film, format: Format, sixteen_bit: bool) -> Vec<u8> {
     let mut bytes = Vec::new();
     Picture { format, sixteen_bit, aovs: &aovs }.write_to(film, &mut bytes).unwrap();
     bytes
-}
-
-/// The folder of third-party test files, if it is there.
-fn assets() -> Option<PathBuf> {
-    let folder = std::env::var_os("GONIO_ASSETS").map_or_else(|| "../shared/assets".into(), PathBuf::from);
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("SKIPPED: no third-party assets");
-    None
 }

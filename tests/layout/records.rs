@@ -30,6 +30,8 @@ glsl! {
     [u32; 4] => "uvec4",
     [Vec4; 3] => "vec4[3]",
     [u32; MAX_LEVELS as usize] => "uint[66]",
+    [u32; MAX_SHADE_GROUPS as usize] => "uint[24]",
+    [DispatchArguments; MAX_SHADE_GROUPS as usize] => "DispatchArguments[24]",
     Camera => "Camera",
     DispatchArguments => "DispatchArguments",
     FilmSum => "FilmSum",
@@ -130,7 +132,7 @@ records! {
     Ray { origin, t_max, direction, skip_instance, skip_primitive, skip_inward, cone_width, cone_spread }
     DispatchArguments { x, y, z }
     Control {
-        extend, shadow, shade, done, chunk_level, chunk_first, chunk_count, shadow_pending, shadow_count, shadow_first,
+        extend, shadow, shade, shade_count, done, chunk_level, chunk_first, chunk_count, shadow_pending, shadow_count, shadow_first,
         chunk_limit, level0_capacity, level_capacity, shadow_capacity, overflows, nan_count, clamped_count,
         limited_count, closest_rays, shadow_rays, rounds, level_count,
     }
@@ -169,7 +171,7 @@ macro_rules! constants {
 constants! {
     INVALID
     CAMERA_PERSPECTIVE CAMERA_ORTHOGRAPHIC
-    MAX_LEVELS STACK_SIZE
+    MAX_LEVELS MAX_SHADE_GROUPS SHADE_GROUP_MISSED STACK_SIZE
     KIND_MESH KIND_SPHERE INSTANCE_NO_SHADOW INSTANCE_MIRRORED INSTANCE_FLAT INSTANCE_GOURAUD
     INTEGRATOR_LOCAL INTEGRATOR_WHITTED INTEGRATOR_PATH
     SAMPLER_SOBOL SAMPLER_STRATIFIED SAMPLER_INDEPENDENT

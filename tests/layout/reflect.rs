@@ -203,7 +203,7 @@ impl<'a> Reflection<'a> {
                 let size = match element.as_str() {
                     "float" | "uint" | "int" => 4,
                     "vec2" | "uvec2" => 8,
-                    "vec3" | "uvec3" => 12,
+                    "vec3" | "uvec3" | "DispatchArguments" => 12,
                     "vec4" | "uvec4" => 16,
                     other => panic!("array of {other}: teach its size to this test"),
                 };

@@ -208,6 +208,8 @@ void store_constants() {
     constants[131] = PARAMETER_FLATNESS;
     constants[132] = PARAMETER_CLEARCOAT;
     constants[133] = PARAMETER_CLEARCOAT_GLOSS;
+    constants[134] = MAX_SHADE_GROUPS;
+    constants[135] = SHADE_GROUP_MISSED;
 }
 
 void main() {

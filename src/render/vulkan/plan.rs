@@ -3,7 +3,7 @@
 use super::device::{DeviceInfo, DeviceKind};
 use super::error::VulkanError;
 use crate::film::Rect;
-use crate::layout::{AovPixel, Batch, FilmSum, Hit, PathState, SHADOWS_FILTERED, SceneHeader, ShadowRay};
+use crate::layout::{AovPixel, Batch, FilmSum, Hit, MAX_SHADE_GROUPS, PathState, SHADOWS_FILTERED, SceneHeader, ShadowRay};
 use crate::shaders::Fetch;
 use std::ops::Range;
 
@@ -14,6 +14,9 @@ const BATCH_CPU: u32 = 1 << 16;
 /// Samples of a pixel in a batch at most: resolve adds them up in one loop, and lavapipe of Mesa 22 ends all loops of an
 /// invocation after 65,535 turns.
 const BATCH_SAMPLES: u32 = 4096;
+/// Samples of a pixel in a batch of part of the picture, if there are as many. Their first rays take the same way, and
+/// devices that walk lanes in lockstep trace them in the time of one.
+const SIDE_BY_SIDE: u32 = 16;
 
 /// Entries of the queues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,13 +75,14 @@ impl QueuePlan {
         self.chunk * 2
     }
 
-    /// Names and bytes of the queues: levels, chunk, hits, shadow rays, slots.
-    pub fn sizes(&self) -> [(&'static str, u64); 5] {
+    /// Names and bytes of the queues: levels, chunk, hits, what is shaded together, shadow rays, slots.
+    pub fn sizes(&self) -> [(&'static str, u64); 6] {
         let level_entries = u64::from(self.batch) + u64::from(self.levels - 1) * u64::from(self.level_capacity());
         [
             ("ray queue", level_entries * size_of::<PathState>() as u64),
             ("ray chunk", u64::from(self.chunk) * size_of::<PathState>() as u64),
             ("hits", u64::from(self.chunk) * size_of::<Hit>() as u64),
+            ("order of shading", u64::from(self.chunk) * u64::from(MAX_SHADE_GROUPS) * size_of::<u32>() as u64),
             ("shadow ray queue", u64::from(self.shadows) * u64::from(self.halves) * size_of::<ShadowRay>() as u64),
             ("sample slots", u64::from(self.batch) * size_of::<FilmSum>() as u64),
         ]
@@ -120,12 +124,13 @@ fn bands_of(crop: Rect, pixels: u64) -> Vec<Rect> {
         .collect()
 }
 
-/// Cuts a band's samples into batches of at most `slots`: several samples of all pixels where the band is small,
-/// pixels of one sample where it is large.
+/// Cuts a band's samples into batches of at most `slots`: `SIDE_BY_SIDE` samples of some pixels where the band is large,
+/// more of all pixels where it is small.
 pub fn batches(band: Rect, samples: Range<u32>, slots: u32) -> impl Iterator<Item = Batch> {
     let pixels = band.width * band.height;
-    let pixel_step = pixels.div_ceil(pixels.div_ceil(slots).max(1)).max(1);
-    let sample_step = (slots / pixel_step).clamp(1, BATCH_SAMPLES);
+    let wanted = (slots / pixels.max(1)).max(SIDE_BY_SIDE).min(samples.end.saturating_sub(samples.start));
+    let sample_step = wanted.min(slots).clamp(1, BATCH_SAMPLES);
+    let pixel_step = (slots / sample_step).max(1);
     samples.clone().step_by(sample_step as usize).flat_map(move |first_sample| {
         let sample_count = sample_step.min(samples.end - first_sample);
         (0..pixels).step_by(pixel_step as usize).map(move |first_pixel| {
@@ -156,8 +161,8 @@ mod tests {
         for batch in batches(band, samples, slots) {
             assert!(batch.slot_count <= slots, "{batch:?}");
             for slot in 0..batch.slot_count {
-                let pixel = batch.first_pixel + slot % batch.pixel_count;
-                let sample = batch.first_sample + slot / batch.pixel_count;
+                let pixel = batch.first_pixel + slot / batch.sample_count;
+                let sample = batch.first_sample + slot % batch.sample_count;
                 assert!(seen.insert((pixel, sample)), "twice: pixel {pixel}, sample {sample}");
             }
         }

@@ -9,11 +9,12 @@ use super::record::Recorder;
 use super::scene::SceneBuffers;
 use crate::bake::SceneData;
 use crate::layout::{
-    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, KIND_SPHERE, Light,
-    T_INFINITE,
+    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, INVALID, KIND_SPHERE, Light,
+    MAX_SHADE_GROUPS, MODEL_BLEND, T_INFINITE,
 };
-use crate::shaders;
+use crate::shaders::{self, Fetch};
 use glam::Vec3;
+use rayon::prelude::*;
 use std::mem::offset_of;
 
 /// The wavefront's kernels in the order in which they run.
@@ -22,31 +23,10 @@ struct Stages<T> {
     schedule: T,
     extend: T,
     shadow: T,
-    shade: T,
+    /// One for each group of paths.
+    shade: Vec<T>,
     resolve: T,
 }
-
-impl<T> Stages<T> {
-    fn try_map<U>(&self, mut f: impl FnMut(&T) -> Result<U, VulkanError>) -> Result<Stages<U>, VulkanError> {
-        Ok(Stages {
-            generate: f(&self.generate)?,
-            schedule: f(&self.schedule)?,
-            extend: f(&self.extend)?,
-            shadow: f(&self.shadow)?,
-            shade: f(&self.shade)?,
-            resolve: f(&self.resolve)?,
-        })
-    }
-}
-
-const NAMES: Stages<&str> = Stages {
-    generate: "generate",
-    schedule: "schedule",
-    extend: "extend",
-    shadow: "shadow",
-    shade: "shade",
-    resolve: "resolve",
-};
 
 /// Every specialisation constant of a kernel that reads the scene (`shaders/kernels/bindings.glsl`).
 pub fn specialisation(scene: &SceneBuffers, data: &SceneData) -> Vec<(u32, u32)> {
@@ -54,6 +34,27 @@ pub fn specialisation(scene: &SceneBuffers, data: &SceneData) -> Vec<(u32, u32)>
     constants.extend(scene.constants());
     constants.extend(scene_constants(data));
     constants
+}
+
+/// Specialisation constants of which a kernel of one group has values of its own.
+const MODELS_PRESENT: u32 = 6;
+const SHADE_GROUP: u32 = 29;
+const SHADE_MODEL: u32 = 30;
+const SHADE_GROUPED: u32 = 31;
+
+/// Bit n: a material has model n.
+fn models(data: &SceneData) -> u32 {
+    data.materials.iter().fold(0, |mask, material| mask | 1 << material.model)
+}
+
+/// Models that may be met in each group of paths: none where nothing was hit, then for each of the scene's `models` that one
+/// alone. A blend is of any, and a light may be a blend.
+fn shade_groups(models: u32) -> Vec<u32> {
+    debug_assert!(models >> (MAX_SHADE_GROUPS - 1) == 0, "a group for each model and one for none");
+    let blend = 1 << MODEL_BLEND;
+    let of = |model: u32| if 1 << model == blend { models } else { 1 << model | models & blend };
+    let hit = (0..u32::BITS).filter(|model| models >> model & 1 != 0).map(of);
+    std::iter::once(models & blend).chain(hit).collect()
 }
 
 /// Those that say what the scene uses.
@@ -64,10 +65,9 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 24] {
     let open =
         |light: &Light| light.flaps_min.max_element() <= -T_INFINITE && light.flaps_max.min_element() >= T_INFINITE;
     let flaps = !data.lights.iter().all(open);
-    let models = data.materials.iter().fold(0, |mask, material| mask | 1 << material.model);
     [
         (5, data.stack_depth.max(1)),
-        (6, models),
+        (MODELS_PRESENT, models(data)),
         (7, data.header.integrator),
         (8, data.header.sampling),
         (9, data.header.filter_kind),
@@ -94,18 +94,41 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 24] {
 }
 
 /// The compiled kernels of a scene.
-pub struct Kernels(Stages<Kernel>);
+pub struct Kernels {
+    stages: Stages<Kernel>,
+    /// Whether each model has a shade kernel of its own.
+    pub grouped: bool,
+}
 
 impl Kernels {
-    /// Compiles for the scene's way of fetching, its pages and what it uses, and for nothing else.
-    pub fn new(context: &Context, scene: &SceneBuffers, data: &SceneData) -> Result<Kernels, VulkanError> {
-        let constants = specialisation(scene, data);
-        let kernels = NAMES.try_map(|name| {
-            let words = shaders::kernel(name, scene.fetch())
+    /// Compiles for one way of fetching and the values of `specialisation`, and for nothing else. `grouped`: paths are shaded
+    /// in groups by the model they hit. Faster where lanes run in lockstep, but there is more to compile.
+    pub fn new(context: &Context, fetch: Fetch, constants: &[(u32, u32)], grouped: bool) -> Result<Kernels, VulkanError> {
+        let make = |name: &str, own: &[(u32, u32)]| {
+            let words = shaders::kernel(name, fetch)
                 .ok_or_else(|| VulkanError::Device(format!("this program was built without the kernel {name}")))?;
-            context.kernel(name, words, &constants, size_of::<Batch>())
-        })?;
-        Ok(Kernels(kernels))
+            let all = constants.iter().filter(|(id, _)| own.iter().all(|(other, _)| id != other)).chain(own);
+            context.kernel(name, words, &all.copied().collect::<Vec<_>>(), size_of::<Batch>())
+        };
+        let grouping = (SHADE_GROUPED, u32::from(grouped));
+        let models = constants.iter().find(|(id, _)| *id == MODELS_PRESENT).map_or(u32::MAX, |(_, models)| *models);
+        let shade = |(group, models): (u32, u32)| {
+            let model = if models.count_ones() == 1 { models.trailing_zeros() } else { INVALID };
+            make("shade", &[grouping, (MODELS_PRESENT, models), (SHADE_GROUP, group), (SHADE_MODEL, model)])
+        };
+        let groups = if grouped { shade_groups(models) } else { vec![models] };
+        let numbered: Vec<(u32, u32)> = (0..).zip(groups).collect();
+        Ok(Kernels {
+            stages: Stages {
+                generate: make("generate", &[])?,
+                schedule: make("schedule", &[grouping])?,
+                extend: make("extend", &[grouping])?,
+                shadow: make("shadow", &[])?,
+                shade: numbered.into_par_iter().map(shade).collect::<Result<_, _>>()?,
+                resolve: make("resolve", &[])?,
+            },
+            grouped,
+        })
     }
 }
 
@@ -132,9 +155,9 @@ impl Queues {
         film: Buffer,
         aovs: Buffer,
     ) -> Result<Queues, VulkanError> {
-        let [levels, chunk, hits, shadows, slots] =
+        let [levels, chunk, hits, order, shadows, slots] =
             plan.sizes().map(|(name, size)| context.buffer(name, size, Place::Device));
-        let (levels, chunk, hits, shadows, slots) = (levels?, chunk?, hits?, shadows?, slots?);
+        let (levels, chunk, hits, order, shadows, slots) = (levels?, chunk?, hits?, order?, shadows?, slots?);
         let control = context.buffer("control record", size_of::<Control>() as u64, Place::Device)?;
         let control_copy = context.buffer("copy of the control record", control.size(), Place::Readback)?;
         // Bindings of set 1 (`shaders/kernels/bindings.glsl`).
@@ -148,9 +171,19 @@ impl Queues {
             (1, 5) => vec![slots.clone()],
             (1, 6) => vec![film.clone()],
             (1, 7) => vec![aovs.clone()],
+            (1, 12) => vec![order.clone()],
             _ => Vec::new(),
         };
-        let stages = kernels.0.try_map(|kernel| Bound::new(kernel, find))?;
+        let bind = |kernel: &Kernel| Bound::new(kernel, find);
+        let Stages { generate, schedule, extend, shadow, shade, resolve } = &kernels.stages;
+        let stages = Stages {
+            generate: bind(generate)?,
+            schedule: bind(schedule)?,
+            extend: bind(extend)?,
+            shadow: bind(shadow)?,
+            shade: shade.iter().map(bind).collect::<Result<_, _>>()?,
+            resolve: bind(resolve)?,
+        };
         Ok(Queues { plan, control, chunk, hits, film, aovs, control_copy, stages })
     }
 
@@ -166,10 +199,10 @@ impl Queues {
 
     /// Records: every kernel once over nothing, so that a driver which compiles at the first dispatch does it now.
     pub fn record_warm_up<'r>(&'r self, r: &Recorder<'r>) {
-        let nothing = Batch { crop_width: 1, pixel_count: 1, ..Batch::default() };
+        let nothing = Batch { crop_width: 1, pixel_count: 1, sample_count: 1, ..Batch::default() };
         r.update(&self.control, 0, bytemuck::bytes_of(&self.fresh_control()));
         let Stages { generate, schedule, extend, shadow, shade, resolve } = &self.stages;
-        for bound in [generate, schedule, extend, shadow, shade, resolve] {
+        for bound in [generate, schedule, extend, shadow, resolve].into_iter().chain(shade) {
             r.barrier();
             r.dispatch(bound, bytemuck::bytes_of(&nothing), 1);
         }
@@ -200,7 +233,10 @@ impl Queues {
         r.dispatch_indirect(&self.stages.shadow, push, &self.control, offset_of!(Control, shadow) as u64);
         r.timestamp();
         r.barrier();
-        r.dispatch_indirect(&self.stages.shade, push, &self.control, offset_of!(Control, shade) as u64);
+        for (group, shade) in self.stages.shade.iter().enumerate() {
+            let arguments = offset_of!(Control, shade) + group * size_of::<DispatchArguments>();
+            r.dispatch_indirect(shade, push, &self.control, arguments as u64);
+        }
         r.timestamp();
         r.barrier();
     }

@@ -13,7 +13,7 @@
 //! on every machine. Vertices along creases and texture seams are doubled, at bit-equal positions.
 //!
 //! Sizes are finite and positive and segment counts lie between the bounds given below; a reader of user input checks
-//! that first (`check_segments`, `check_size`). Shapes made from user data return the reason for a refusal instead.
+//! that first (sizes by `check_size`). Shapes made from user data return the reason for a refusal instead.
 
 mod flat;
 mod grid;
@@ -45,14 +45,6 @@ pub use terrain::{TRIANGLES_MAX, terrain};
 pub const SEGMENTS_MIN: u32 = 3;
 /// Most segments along any direction of a shape: 2^12 squared cells are 33 million triangles.
 pub const SEGMENTS_MAX: u32 = 4096;
-
-/// `segments`, if it is a number of segments that goes around an axis.
-pub fn check_segments(segments: i64) -> Result<u32, String> {
-    if (i64::from(SEGMENTS_MIN)..=i64::from(SEGMENTS_MAX)).contains(&segments) {
-        return Ok(segments as u32);
-    }
-    Err(format!("{segments} segments; allowed are {SEGMENTS_MIN} to {SEGMENTS_MAX}"))
-}
 
 /// `size`, if it is a length a shape can have.
 pub fn check_size(size: f64) -> Result<f64, String> {

@@ -5,7 +5,7 @@
 //! | unlit | `Emissive` in the base colour |
 //! | metal, roughness < 0.1, neither from a texture | `Mirror` in the base colour |
 //! | else | `Principled`: base colour, metallic, roughness, index (1.5); each times its texture |
-//! | transmission with a volume | `Dielectric` with Beer absorption |
+//! | transmission with a volume | `Dielectric` with Beer absorption; a texture of the share counts by its mean |
 //! | transmission of a thin surface | filtered transparency |
 //! | BLEND | opacity; interpolated transparency where no texture varies it |
 //! | MASK | opacity 0 or 1 |
@@ -100,11 +100,13 @@ impl Maker<'_, '_> {
         }
         let transmission = extensions.and_then(|e| e.transmission.as_ref());
         if let Some(transmission) = transmission.filter(|_| !unlit && surface.metallic <= 0.5) {
-            if transmission.transmission_texture.is_some() {
-                self.notes.insert("transmission textures are ignored".to_owned());
+            let mut factor = clamp01(transmission.transmission_factor.0);
+            if let Some(info) = transmission.transmission_texture.as_ref().filter(|_| factor > 0.0) {
+                factor = clamp01(factor * self.textures.mean_red(info, &self.place)?);
+                self.notes.insert("transmission textures count by their mean".to_owned());
             }
             let volume = extensions.and_then(|e| e.volume.as_ref());
-            transmit(&mut self.material, &surface, clamp01(transmission.transmission_factor.0), volume);
+            transmit(&mut self.material, &surface, factor, volume);
         }
         self.cover(source, &surface)?;
         self.emit(source)?;

@@ -52,6 +52,23 @@ impl<'a> Textures<'a> {
         Ok(opaque)
     }
 
+    /// Mean of the picture's red channel, 0 to 1.
+    pub fn mean_red(&mut self, info: &Info, place: &str) -> Result<f32, Failure> {
+        let (image, ..) = self.resolve(info, place)?;
+        let mean = |texels: &[[u8; 4]]| {
+            let sum: u64 = texels.iter().map(|texel| u64::from(texel[0])).sum();
+            sum as f64 / (255.0 * texels.len().max(1) as f64)
+        };
+        Ok(match &self.picture(image, ColorSpace::Linear)?.data {
+            TextureData::Srgb8(texels) | TextureData::Linear8(texels) => mean(texels) as f32,
+            TextureData::Float(texels) => {
+                let sum: f64 = texels.iter().map(|texel| f64::from(texel[0])).sum();
+                (sum / texels.len().max(1) as f64) as f32
+            }
+            TextureData::Pattern(_) => 1.0,
+        })
+    }
+
     /// Image index, wrap modes, and whether the nearest texel is wanted.
     fn resolve(&self, info: &Info, place: &str) -> Result<(usize, [Wrap; 2], bool), Failure> {
         let Some(texture) = self.root.textures.get(info.index.value()) else {

@@ -5,6 +5,7 @@
 
 use crate::scene::load::text::line_and_column;
 use crate::scene::{Location, SceneError};
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
 
@@ -84,13 +85,15 @@ impl Node {
 }
 
 /// A parsed file with the overrides that were applied to it.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Document {
     pub file: PathBuf,
     pub text: String,
     /// As typed, for messages.
     pub overrides: Vec<String>,
     pub root: Node,
+    /// What is wrong, as far as reading could go on all the same: all of it is told at once.
+    faults: RefCell<Vec<SceneError>>,
 }
 
 impl Document {
@@ -105,13 +108,13 @@ impl Document {
             SceneError::bad(Location { file: file.to_owned(), line, column }, message)
         })?;
         let root = Node { value: Value::Table(root), place: Place::Text(0) };
-        Ok(Self { file: file.to_owned(), text, overrides: Vec::new(), root })
+        Ok(Self { file: file.to_owned(), text, overrides: Vec::new(), root, faults: RefCell::default() })
     }
 
     /// A document that holds nothing yet: overrides alone will fill it.
     pub fn empty(file: &Path) -> Self {
         let root = Node { value: Value::Table(Table::default()), place: Place::Text(0) };
-        Self { file: file.to_owned(), text: String::new(), overrides: Vec::new(), root }
+        Self { file: file.to_owned(), text: String::new(), overrides: Vec::new(), root, faults: RefCell::default() }
     }
 
     /// The place as `file:line:column`, or as the override that was typed.
@@ -127,6 +130,48 @@ impl Document {
 
     pub fn bad(&self, place: Place, message: impl Into<String>) -> SceneError {
         SceneError::bad(self.location(place), message)
+    }
+
+    /// Keeps a fault to be told with the others; the caller goes on as if its key had not been written.
+    pub fn note(&self, fault: SceneError) {
+        self.faults.borrow_mut().push(fault);
+    }
+
+    pub fn is_faulty(&self) -> bool {
+        !self.faults.borrow().is_empty()
+    }
+
+    /// The fault that was noted last, once more: told twice, it is shown once.
+    pub fn last_fault(&self) -> Option<SceneError> {
+        match self.faults.borrow().last() {
+            Some(SceneError::Bad { location, message }) => Some(SceneError::bad(location.clone(), message)),
+            _ => None,
+        }
+    }
+
+    /// What `read` makes of a part of the document that others do not depend on. Its error is noted, unless faults were
+    /// noted on the way: then it may be no more than their consequence.
+    pub fn attempt<T>(&self, read: impl FnOnce() -> Result<T, SceneError>) -> Option<T> {
+        let before = self.faults.borrow().len();
+        read()
+            .map_err(|error| {
+                if self.faults.borrow().len() == before {
+                    self.note(error)
+                }
+            })
+            .ok()
+    }
+
+    /// What `read` makes of the document, or all that is wrong with it.
+    pub fn judge<T>(&self, read: impl FnOnce() -> Result<T, SceneError>) -> Result<T, SceneError> {
+        let read = read();
+        let mut faults = self.faults.take();
+        match read {
+            Ok(value) if faults.is_empty() => return Ok(value),
+            Ok(_) => {}
+            Err(error) => faults.push(error),
+        }
+        Err(SceneError::all(faults))
     }
 }
 

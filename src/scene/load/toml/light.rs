@@ -12,10 +12,9 @@ use glam::Vec3;
 /// All lights of the document.
 pub fn read_lights(root: &Reader, settings: &LightSettings, warnings: &mut Vec<String>) -> Result<Vec<Light>> {
     let mut names = Names::new("light");
-    root.tables("light", &LIGHT)?
-        .iter()
-        .enumerate()
-        .map(|(index, table)| {
+    let tables = root.tables("light", &LIGHT)?;
+    let read = |(index, table): (usize, &Reader)| {
+        table.attempt(|| {
             let mut light = read_light(table, settings, warnings)?;
             light.name = match table.text("name")? {
                 Some(name) => names.declare(table, name)?,
@@ -23,7 +22,8 @@ pub fn read_lights(root: &Reader, settings: &LightSettings, warnings: &mut Vec<S
             };
             Ok(light)
         })
-        .collect()
+    };
+    Ok(tables.iter().enumerate().filter_map(read).collect())
 }
 
 /// One light, named by its type for now.

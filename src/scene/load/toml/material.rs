@@ -21,17 +21,21 @@ pub fn read_materials(
     warnings: &mut Vec<String>,
 ) -> Result<(Vec<Material>, Names)> {
     let mut names = Names::new("material");
-    let mut materials = Vec::new();
-    let entries = root.tables("material", &MATERIAL)?;
-    for table in &entries {
-        let name = table.required("name", table.text("name")?)?;
-        let name = names.declare(table, name)?;
-        materials.push(read_material(table, name, textures, tables, warnings)?);
+    let (mut entries, mut materials) = (Vec::new(), Vec::new());
+    for table in root.tables("material", &MATERIAL)? {
+        let name = table.attempt(|| names.declare(&table, table.required("name", table.text("name")?)?));
+        let Some(name) = name else { continue };
+        let material = table.attempt(|| read_material(&table, name.clone(), textures, tables, warnings));
+        // Objects find the name of a faulty material as well.
+        materials.push(material.unwrap_or_else(|| Material::grey(name)));
+        entries.push(table);
     }
     // A blend may name what comes after it.
     for (table, material) in entries.iter().zip(&mut materials) {
-        if let Model::Blend { a, b, .. } = &mut material.model {
-            [*a, *b] = read_blend(table, &names)?;
+        if let Model::Blend { a, b, .. } = &mut material.model
+            && let Some(parts) = table.attempt(|| read_blend(table, &names))
+        {
+            [*a, *b] = parts;
         }
     }
     Ok((materials, names))
@@ -130,11 +134,10 @@ fn read_rough_model(
     normalisation: Option<&str>,
     tables: &mut Tables,
 ) -> Result<Model> {
-    let [alpha_u, alpha_v] = read_alpha(table)?;
+    let [alpha_u, alpha_v] = read_slopes(table, "alpha")?.unwrap_or([0.2; 2]);
     let eta = || read_eta(table);
     let distribution = table.choice("distribution", DISTRIBUTIONS)?.unwrap_or(Distribution::TrowbridgeReitz);
-    let symmetric = matches!(distribution, Distribution::Gaussian | Distribution::Phong);
-    let one_alpha = symmetric || matches!(name, "kelemen" | "rough-plastic");
+    let one_alpha = is_round(distribution) || matches!(name, "kelemen" | "rough-plastic");
     if one_alpha && alpha_u != alpha_v {
         return Err(table.bad("alpha", "\"alpha\" must be one number here: this model is isotropic"));
     }
@@ -188,9 +191,9 @@ const DISTRIBUTIONS: &[(&str, Distribution)] = &[
 const MASKINGS: &[(&str, Masking)] = &[("v-cavity", Masking::VCavity), ("smith", Masking::Smith)];
 
 /// Roughness along u and v.
-fn read_alpha(table: &Reader) -> Result<[f32; 2]> {
-    let range = Range::new(1.0e-3, 2.0);
-    Ok(table.number_or_numbers::<2>("alpha", range)?.unwrap_or([0.2; 2]).map(|alpha| alpha as f32))
+fn read_slopes(table: &Reader, key: &'static str) -> Result<Option<[f32; 2]>> {
+    let slopes = table.number_or_numbers::<2>(key, Range::new(1.0e-3, 2.0))?;
+    Ok(slopes.map(|slopes| slopes.map(|slope| slope as f32)))
 }
 
 /// The Fresnel reflection of a metal, which must be given.
@@ -265,11 +268,10 @@ fn read_normalisation(table: &Reader, model: &str) -> Result<Option<&'static str
 
 fn read_lobes(table: &Reader) -> Result<Vec<Lobe>> {
     table.exclusive("m", "lobes")?;
-    let distribution = table.choice("distribution", DISTRIBUTIONS)?.unwrap_or_default();
+    let shared = table.choice("distribution", DISTRIBUTIONS)?.unwrap_or_default();
     let tables = table.tables("lobes", &LOBE)?;
     if !table.has("lobes") {
-        let lobe = Lobe::beckmann(table.float("m")?.unwrap_or(0.2), 1.0);
-        return Ok(vec![Lobe { distribution, ..lobe }]);
+        return Ok(vec![read_lobe(table, read_slopes(table, "m")?.unwrap_or([0.2; 2]), 1.0, shared)?]);
     }
     if tables.is_empty() || tables.len() > 2 {
         return Err(table.bad("lobes", format!("\"lobes\" must be one or two tables, found {}", tables.len())));
@@ -277,9 +279,9 @@ fn read_lobes(table: &Reader) -> Result<Vec<Lobe>> {
     let lobes = tables
         .iter()
         .map(|lobe| {
-            let m = lobe.required("m", lobe.float("m")?)?;
+            let m = lobe.required("m", read_slopes(lobe, "m")?)?;
             let weight = lobe.required("weight", lobe.float("weight")?)?;
-            Ok(Lobe { distribution, ..Lobe::beckmann(m, weight) })
+            read_lobe(lobe, m, weight, lobe.choice("distribution", DISTRIBUTIONS)?.unwrap_or(shared))
         })
         .collect::<Result<Vec<_>>>()?;
     let sum: f32 = lobes.iter().map(|lobe| lobe.weight).sum();
@@ -287,6 +289,18 @@ fn read_lobes(table: &Reader) -> Result<Vec<Lobe>> {
         return Err(table.bad("lobes", format!("the weights of \"lobes\" must add up to 1, not to {sum}")));
     }
     Ok(lobes)
+}
+
+fn read_lobe(table: &Reader, [alpha_u, alpha_v]: [f32; 2], weight: f32, distribution: Distribution) -> Result<Lobe> {
+    if is_round(distribution) && alpha_u != alpha_v {
+        return Err(table.bad("m", "\"m\" must be one number here: this distribution is isotropic"));
+    }
+    Ok(Lobe { distribution, alpha_u, alpha_v, weight })
+}
+
+/// Whether a distribution has one roughness in all directions.
+fn is_round(distribution: Distribution) -> bool {
+    matches!(distribution, Distribution::Gaussian | Distribution::Phong)
 }
 
 fn read_fresnel(table: &Reader) -> Result<Fresnel> {

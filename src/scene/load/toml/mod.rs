@@ -44,20 +44,26 @@ pub fn scene_from_text(file: &Path, text: String, overrides: &[Override]) -> Res
 }
 
 fn scene_from_document(document: &Document) -> Result<Scene, SceneError> {
+    document.judge(|| read_scene(document))
+}
+
+/// The scene with whatever stands where a fault was noted: only for `Document::judge`.
+fn read_scene(document: &Document) -> Result<Scene, SceneError> {
     let root = Reader::open(document, &document.root, &SCENE)?;
     let mut scene = bare_scene(&document.file);
     let mut lights = LightSettings { unit: IntensityUnit::Radiometric, ambient: Rgb::ZERO };
-    read_render(&root, &mut scene.settings, &mut lights)?;
-    read_film(&root, &mut scene.film)?;
-    let camera = read_camera(&root, &scene.film, None)?;
-    scene.camera = root.required("camera", camera)?;
+    document.attempt(|| read_render(&root, &mut scene.settings, &mut lights));
+    document.attempt(|| read_film(&root, &mut scene.film));
+    let camera = root.attempt(|| root.required("camera", read_camera(&root, &scene.film, None)?));
+    scene.camera = camera.unwrap_or(scene.camera);
     scene.ambient = lights.ambient;
     let mut textures = texture::Textures::default();
-    scene.background = read_background(&root, &mut textures)?;
+    let background = document.attempt(|| read_background(&root, &mut textures));
+    scene.background = background.unwrap_or(scene.background);
     let mut tables = table::Tables::default();
     let (materials, names) = material::read_materials(&root, &mut textures, &mut tables, &mut scene.warnings)?;
     (scene.materials, scene.textures, scene.tables) = (materials, textures.list, tables.list);
-    object::read_objects(&root, &names, &mut scene)?;
+    root.attempt(|| object::read_objects(&root, &names, &mut scene));
     scene.lights = light::read_lights(&root, &lights, &mut scene.warnings)?;
     warn_dark(&mut scene);
     Ok(scene)
@@ -67,14 +73,18 @@ fn scene_from_document(document: &Document) -> Result<Scene, SceneError> {
 pub fn override_film(scene: &mut Scene, overrides: &[Override]) -> Result<(), SceneError> {
     let mut document = Document::empty(Path::new(&scene.name));
     document.apply(overrides)?;
-    read_film(&Reader::open(&document, &document.root, &SCENE)?, &mut scene.film)
+    document.judge(|| read_film(&Reader::open(&document, &document.root, &SCENE)?, &mut scene.film))
 }
 
 /// Changes what `[render]`, `[film]` and `[camera]` say of a scene that came from another format.
 pub fn override_settings(scene: &mut Scene, overrides: &[Override]) -> Result<(), SceneError> {
     let mut document = Document::empty(Path::new(&scene.name));
     document.apply(overrides)?;
-    let root = Reader::open(&document, &document.root, &SCENE)?;
+    document.judge(|| override_from_document(&document, scene))
+}
+
+fn override_from_document(document: &Document, scene: &mut Scene) -> Result<(), SceneError> {
+    let root = Reader::open(document, &document.root, &SCENE)?;
     for key in ["background", "material", "object", "light", "panel"] {
         if root.has(key) {
             let message = format!("{key:?} can only be set in a TOML scene; here render, film and camera can");

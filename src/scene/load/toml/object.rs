@@ -23,7 +23,7 @@ pub fn read_objects(root: &Reader, materials: &Names, scene: &mut Scene) -> Resu
     }
     let mut objects = Objects { scene, materials, names: Names::new("object"), grey: None, files: HashMap::new() };
     for (index, table) in tables.iter().enumerate() {
-        objects.read(table, index)?;
+        table.attempt(|| objects.read(table, index));
     }
     Ok(())
 }

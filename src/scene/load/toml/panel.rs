@@ -24,7 +24,15 @@ impl Layout {
     pub fn from_text(file: &Path, text: String, overrides: &[Override]) -> Result<Self> {
         let mut document = Document::parse(file, text)?;
         document.apply(overrides)?;
-        let root = Reader::open(&document, &document.root, &SCENE)?;
+        match document.attempt(|| Self::read(&document)) {
+            Some(layout) if !document.is_faulty() => Ok(layout),
+            // The scene's faults are told beside those of its panels.
+            _ => scene_from_document(&document).map(|_| Self::default()),
+        }
+    }
+
+    fn read(document: &Document) -> Result<Self> {
+        let root = Reader::open(document, &document.root, &SCENE)?;
         let mut layout = Self::default();
         for panel in root.tables("panel", &PANEL)? {
             let label = panel.required("label", panel.text("label")?)?;

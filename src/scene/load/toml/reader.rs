@@ -14,19 +14,27 @@ pub struct Reader<'a> {
     pub place: Place,
     section: &'static Section,
     entries: &'a [Entry],
+    /// Whether keys were written that the section does not have.
+    has_unknown: bool,
 }
 
 impl<'a> Reader<'a> {
-    /// Opens a table; a key that `section` does not list is an error.
+    /// Opens a table; a key that `section` does not list is a fault.
     pub fn open(document: &'a Document, node: &'a Node, section: &'static Section) -> Result<Self> {
         let Value::Table(table) = &node.value else {
             let message = format!("{} must be a table, found {}", section.noun, node.found());
             return Err(document.bad(node.place, message));
         };
-        if let Some(entry) = table.entries.iter().find(|entry| section.key(&entry.key).is_none()) {
-            return Err(document.bad(entry.key_place, unknown_key(&entry.key, section)));
-        }
-        Ok(Self { document, place: node.place, section, entries: &table.entries })
+        let unknown = table.entries.iter().filter(|entry| section.key(&entry.key).is_none());
+        let faults =
+            unknown.map(|entry| document.note(document.bad(entry.key_place, unknown_key(&entry.key, section))));
+        let has_unknown = faults.count() > 0;
+        Ok(Self { document, place: node.place, section, entries: &table.entries, has_unknown })
+    }
+
+    /// `Document::attempt` for this table: where it has unknown keys, what is missing may be what they were meant to be.
+    pub fn attempt<T>(&self, read: impl FnOnce() -> Result<T>) -> Option<T> {
+        if self.has_unknown { read().ok() } else { self.document.attempt(read) }
     }
 
     /// The value of `key`, if it was written.
@@ -50,9 +58,11 @@ impl<'a> Reader<'a> {
         self.document.bad(node.place, format!("{key:?} must be {allowed}, found {}", node.found()))
     }
 
-    /// `value`, or the error that `key` is missing.
+    /// `value`, or the error that `key` is missing or, if it was written, what is wrong with it.
     pub fn required<T>(&self, key: &str, value: Option<T>) -> Result<T> {
-        value.ok_or_else(|| self.document.bad(self.place, format!("{} needs the key {key:?}", self.section.noun)))
+        let missing = || self.document.bad(self.place, format!("{} needs the key {key:?}", self.section.noun));
+        let wrong = || self.has(key).then(|| self.document.last_fault()).flatten();
+        value.ok_or_else(|| wrong().unwrap_or_else(missing))
     }
 
     /// Refuses two keys that say the same.
@@ -120,11 +130,15 @@ impl<'a> Reader<'a> {
             matches!(self.section.key(key).map(|key| key.kind), Some(Kind::Choice(words)) if words == names),
             "{key}: the words differ from the table's: {names:?}"
         );
-        let Value::String(text) = &node.value else { return Err(self.mismatch(key, node)) };
-        match meanings.iter().find(|(name, _)| name == text) {
-            Some((_, meaning)) => Ok(Some(*meaning)),
-            None => Err(self.document.bad(node.place, unknown_word(key, text, &names))),
-        }
+        let fault = match &node.value {
+            Value::String(text) => match meanings.iter().find(|(name, _)| name == text) {
+                Some((_, meaning)) => return Ok(Some(*meaning)),
+                None => self.document.bad(node.place, unknown_word(key, text, &names)),
+            },
+            _ => self.mismatch(key, node),
+        };
+        self.document.note(fault);
+        Ok(None)
     }
 
     /// The word of a key that `choice` has accepted.
@@ -196,7 +210,11 @@ impl<'a> Reader<'a> {
     fn read<T>(&self, key: &str, convert: impl FnOnce(Kind, &'a Node) -> Option<T>) -> Result<Option<T>> {
         let Some(node) = self.node(key) else { return Ok(None) };
         let kind = self.section.key(key).map_or(Kind::Special(""), |key| key.kind);
-        convert(kind, node).map(Some).ok_or_else(|| self.mismatch(key, node))
+        let value = convert(kind, node);
+        if value.is_none() {
+            self.document.note(self.mismatch(key, node));
+        }
+        Ok(value)
     }
 }
 
