@@ -20,9 +20,8 @@ use std::time::Instant;
 
 /// Side of a block of the documentation's pictures that is compared as one pixel: below it, filters and JPEG differ.
 const BLOCK: u32 = 4;
-/// Samples of each pixel of a documentation picture: 128 of each block, after which noise is a code or two beside the eight
-/// that are allowed.
-const DISPLAY_SAMPLES: u32 = 8;
+/// Samples of each pixel of a documentation picture: 256 of each block. With 64 of each, metal's noise alone reaches the limit.
+const DISPLAY_SAMPLES: u32 = 16;
 
 #[derive(Args)]
 #[command(after_help = "\
