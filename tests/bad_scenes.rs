@@ -211,7 +211,7 @@ fn materials_that_mean_nothing_are_refused() {
             "a.toml:9:7: k_d + k_s = 1.1; cook-torrance shares its light: k_d + k_s must be 1",
         ),
         (format!("{ct}k_s = 1.5"), "a.toml:8:7: k_s = 1.5; cook-torrance shares its light: k_d + k_s must be 1"),
-        (format!("{ct}m = 0"), "a.toml:8:5: \"m\" must be a number from 0.001 to 2, found 0"),
+        (format!("{ct}m = 0"), "a.toml:8:5: \"m\" must be a number or two numbers [u, v], from 0.001 to 2, found 0"),
         (format!("{ct}lobes = []"), "a.toml:8:9: \"lobes\" must be one or two tables, found 0"),
         (
             format!("{ct}lobes = [{{ m = 0.1, weight = 0.5 }}]"),

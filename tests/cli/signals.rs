@@ -104,7 +104,7 @@ fn ctrl_c_ends_all_devices_on_whole_passes() {
 #[test]
 fn ctrl_c_while_a_large_scene_is_baked_ends_it_and_leaves_nothing() {
     let folder = Folder::new();
-    let mut render = Running::until(&folder, "terrain: baking", &["terrain:2M", "-o", "a.png"]);
+    let mut render = Running::until(&folder, "terrain:2M: baking", &["terrain:2M", "-o", "a.png"]);
     let sent = Instant::now();
     render.signal("-INT");
     assert_eq!(render.ends().code(), Some(130));
