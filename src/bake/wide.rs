@@ -88,8 +88,8 @@ impl Cost {
         let leaf = if primitives <= most { area * PRIMITIVE_COST * primitives as f32 } else { f32::INFINITY };
         plan.is_leaf = leaf < node;
         cost.forest[0] = leaf.min(node);
-        for i in 0..6 {
-            let ((least, split), before) = (forests[i], cost.forest[i]);
+        for (i, &(least, split)) in forests.iter().take(6).enumerate() {
+            let before = cost.forest[i];
             (cost.forest[i + 1], plan.split[i]) = if least < before { (least, split) } else { (before, 0) };
         }
         (cost, plan)

@@ -136,8 +136,9 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let mut interrupted = None;
     let mut scenes = sheet.scenes();
     loop {
-        let mut next =
-            || scenes.next().map(|scene| scene.and_then(|(label, scene)| Ok((label, prepare(args, scene, &interrupt)?))));
+        let mut next = || {
+            scenes.next().map(|scene| scene.and_then(|(label, scene)| Ok((label, prepare(args, scene, &interrupt)?))))
+        };
         let prepared = if films.is_empty() {
             let unfinished: Vec<&OutputFile> = std::iter::once(&output).chain(&stats_file).collect();
             interrupt.expendable(&unfinished, next)

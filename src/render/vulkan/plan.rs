@@ -3,7 +3,9 @@
 use super::device::{DeviceInfo, DeviceKind};
 use super::error::VulkanError;
 use crate::film::Rect;
-use crate::layout::{AovPixel, Batch, FilmSum, Hit, MAX_SHADE_GROUPS, PathState, SHADOWS_FILTERED, SceneHeader, ShadowRay};
+use crate::layout::{
+    AovPixel, Batch, FilmSum, Hit, MAX_SHADE_GROUPS, PathState, SHADOWS_FILTERED, SceneHeader, ShadowRay,
+};
 use crate::shaders::Fetch;
 use std::ops::Range;
 

@@ -103,7 +103,12 @@ pub struct Kernels {
 impl Kernels {
     /// Compiles for one way of fetching and the values of `specialisation`, and for nothing else. `grouped`: paths are shaded
     /// in groups by the model they hit. Faster where lanes run in lockstep, but there is more to compile.
-    pub fn new(context: &Context, fetch: Fetch, constants: &[(u32, u32)], grouped: bool) -> Result<Kernels, VulkanError> {
+    pub fn new(
+        context: &Context,
+        fetch: Fetch,
+        constants: &[(u32, u32)],
+        grouped: bool,
+    ) -> Result<Kernels, VulkanError> {
         let make = |name: &str, own: &[(u32, u32)]| {
             let words = shaders::kernel(name, fetch)
                 .ok_or_else(|| VulkanError::Device(format!("this program was built without the kernel {name}")))?;
