@@ -102,7 +102,7 @@ fn every_inexact_glsl_expression_is_refused_with_function_and_line() {
         ("round(a)", "GLSL.std.450 Round"),
         ("modf(a, data.z)", "GLSL.std.450 Modf"),
         ("ldexp(a, i)", "GLSL.std.450 Ldexp"),
-        ("frexp(a, number)", "GLSL.std.450 FrexpStruct"),
+        ("frexp(a, number)", "GLSL.std.450 Frexp"),
         ("radians(a)", "GLSL.std.450 Radians"),
         ("degrees(a)", "GLSL.std.450 Degrees"),
         ("float(packHalf2x16(v.xy))", "GLSL.std.450 PackHalf2x16"),
@@ -110,13 +110,14 @@ fn every_inexact_glsl_expression_is_refused_with_function_and_line() {
     ];
     for (expression, operation) in cases {
         let found = strict::check(&probe_expression(expression));
-        let refused = found.iter().find(|v| v.operation == operation);
+        // Newer compilers write the variant that returns a structure.
+        let refused = found.iter().find(|v| [operation, &format!("{operation}Struct")].contains(&&*v.operation));
         let refused = refused.unwrap_or_else(|| panic!("{expression}: {operation} not in {found:?}"));
         assert_eq!(refused.function, "victim", "{expression}");
         assert_eq!(refused.line, 13, "{expression}");
         assert_eq!(refused.file, "shaders/kernels/probe.comp", "{expression}");
         let message = refused.to_string();
-        let start = format!("shaders/kernels/probe.comp:13: {operation} in `victim` is not strict: ");
+        let start = format!("shaders/kernels/probe.comp:13: {} in `victim` is not strict: ", refused.operation);
         assert!(message.starts_with(&start), "{message}");
     }
 }
