@@ -319,6 +319,8 @@ impl BenchArgs {
             };
             let mut renderers = Vec::new();
             for Contender { label, flags } in contenders {
+                // As large pictures are rendered; in the middle of a run would be too late.
+                let flags = BackendFlags { group_from: Some(0), ..flags.clone() };
                 match flags.renderer(&data) {
                     Ok(renderer) => renderers.push((label.clone(), renderer)),
                     Err(RenderError::NoDevice(_)) if self.on.is_empty() && self.device.is_none() => {}

@@ -241,6 +241,9 @@ pub struct BackendFlags {
     /// Fail on a Vulkan device that does not compute every bit as it must (`gonio devices`), instead of a warning.
     #[arg(long)]
     pub require_exact: bool,
+    /// Not a flag: `VulkanOptions::group_from`.
+    #[arg(skip)]
+    pub group_from: Option<u64>,
 }
 
 impl BackendFlags {
@@ -277,7 +280,12 @@ impl BackendFlags {
 
     /// What the flags say of a Vulkan device.
     pub fn vulkan_options(&self) -> VulkanOptions {
-        VulkanOptions { device: self.device.clone(), fetch: self.fetch.into(), ..VulkanOptions::default() }
+        VulkanOptions {
+            device: self.device.clone(),
+            fetch: self.fetch.into(),
+            group_from: self.group_from,
+            ..VulkanOptions::default()
+        }
     }
 }
 
