@@ -102,11 +102,19 @@ fn third_party_scenes_are_the_same_on_cpu_and_device() {
         "gltf/BoxTextured/BoxTextured.gltf",
         "gltf/02_suzanne/02_suzanne.gltf",
     ];
+    let take = Take { width: 80, height: 60, samples: 1, seed: 0 };
     for file in files {
         let Some(path) = scenes::asset(file) else { continue };
-        if assert_parity(&path, Take { width: 80, height: 60, samples: 1, seed: 0 }).is_none() {
+        if assert_parity(&path, take).is_none() {
             return;
         }
+    }
+    // Its mesh is not beside it.
+    if let Some(mesh) = scenes::asset("kitchen/kitchen.obj") {
+        let mesh = format!("object.kitchen.file={mesh:?}").parse().unwrap();
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/others/kitchen.toml");
+        let scene = load::load(&path, &[mesh]).unwrap_or_else(|error| panic!("{error}"));
+        assert_scene_parity(scene, take);
     }
 }
 

@@ -20,7 +20,7 @@ fn stem(path: &Path) -> String {
 fn every_scene_has_a_picture_and_every_picture_a_scene() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
-    let scenes = [("", files(&root, &["toml"])), ("lecture/", files(&root.join("lecture"), &["toml"]))];
+    let scenes = ["", "lecture/", "others/"].map(|folder| (folder, files(&root.join(folder), &["toml"])));
     let mut names = Vec::new();
     for (folder, paths) in &scenes {
         for name in paths.iter().map(|path| stem(path)) {
