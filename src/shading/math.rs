@@ -60,7 +60,7 @@ fn rcp_start(x: f32) -> f32 {
 }
 
 /// 1 / x within 0.51 ULP for |x| in TINY..HUGE; else 0.
-#[inline]
+#[inline(always)]
 pub fn rcp(x: f32) -> f32 {
     let y = rcp_start(x);
     // The residual 1 - x y_high without rounding error: products of halves are exact.

@@ -13,12 +13,35 @@ use super::ray::{LevelRay, object_origin, prepare_ray, transform_vector, within_
 use super::sphere::intersect_sphere;
 use super::triangle::intersect_triangle;
 use crate::layout::{Hit, INSTANCE_NO_SHADOW, INVALID, KIND_SPHERE, Ray, STACK_SIZE, SceneView, load_top_instance};
-use arrayvec::ArrayVec;
 use glam::UVec2;
 use pulp::{Arch, NullaryFnOnce};
 
 /// Groups put aside. Bake has proved that it is high enough.
-type Stack = ArrayVec<UVec2, { STACK_SIZE as usize }>;
+struct Stack {
+    groups: [UVec2; STACK_SIZE as usize],
+    len: usize,
+}
+
+impl Stack {
+    #[inline(always)]
+    fn new() -> Self {
+        Self { groups: [UVec2::ZERO; STACK_SIZE as usize], len: 0 }
+    }
+
+    /// `deepest` becomes the number of entries in use at the worst moment.
+    #[inline(always)]
+    fn push(&mut self, group: UVec2, deepest: &mut u32) {
+        self.groups[self.len] = group;
+        self.len += 1;
+        *deepest = (*deepest).max(self.len as u32);
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> Option<UVec2> {
+        self.len = self.len.checked_sub(1)?;
+        Some(self.groups[self.len])
+    }
+}
 
 /// Groups with no child left are at most this.
 const GROUP_EMPTY: u32 = 0x00ff_ffff;
@@ -107,7 +130,7 @@ fn walk_mesh(
     while walking {
         let index = take_child(&mut group, level.octant);
         if group.y > GROUP_EMPTY {
-            push(&mut stack, group, deepest);
+            stack.push(group, deepest);
         }
         let node = &scene.nodes[index as usize];
         let hits = approx_intersect_node(node, level, MESH_MARGIN, hit.t);
@@ -146,7 +169,7 @@ fn traverse(scene: &SceneView, ray: &Ray, any: bool, casting: bool, deepest: &mu
     let mut walking = true;
     while walking {
         // Nodes until there is an instance.
-        while instances.y == 0 && (group.y > GROUP_EMPTY || !stack.is_empty()) {
+        while instances.y == 0 && (group.y > GROUP_EMPTY || stack.len > 0) {
             if group.y <= GROUP_EMPTY
                 && let Some(next) = stack.pop()
             {
@@ -154,7 +177,7 @@ fn traverse(scene: &SceneView, ray: &Ray, any: bool, casting: bool, deepest: &mu
             }
             let index = take_child(&mut group, world.octant);
             if group.y > GROUP_EMPTY {
-                push(&mut stack, group, deepest);
+                stack.push(group, deepest);
             }
             let node = &scene.nodes[index as usize];
             let hits = approx_intersect_node(node, &world, scene.header.top_margin, hit.t);
@@ -165,7 +188,7 @@ fn traverse(scene: &SceneView, ray: &Ray, any: bool, casting: bool, deepest: &mu
         if instances.y != 0 {
             enter_instance(scene, ray, take_primitive(&mut instances), any, casting, &mut hit, deepest);
         }
-        walking = (instances.y != 0 || group.y > GROUP_EMPTY || !stack.is_empty()) && !(any && hit.instance != INVALID);
+        walking = (instances.y != 0 || group.y > GROUP_EMPTY || stack.len > 0) && !(any && hit.instance != INVALID);
     }
     hit
 }
@@ -193,13 +216,6 @@ fn enter_instance(
     } else {
         walk_mesh(scene, ray, &level, id, record.root, any, hit, deepest);
     }
-}
-
-/// Puts a group aside.
-#[inline(always)]
-fn push(stack: &mut Stack, group: UVec2, deepest: &mut u32) {
-    stack.push(group);
-    *deepest = (*deepest).max(stack.len() as u32);
 }
 
 /// One call of `traverse`, compiled for each set of vector instructions that this machine may have and run with the best it
