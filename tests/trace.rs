@@ -7,6 +7,8 @@ use glam::{DAffine3, DVec3, Vec3};
 use gonio::bake::bake;
 use gonio::layout::*;
 use gonio::scene::{Geometry, Mesh, Scene, Transform};
+#[cfg(target_arch = "x86_64")]
+use gonio::trace::box_::{MESH_MARGIN, Portable, approx_intersect_node};
 use gonio::trace::ray::{object_origin, prepare_ray, transform_vector, within_reach};
 use gonio::trace::sphere::intersect_sphere;
 use gonio::trace::traverse::{stack_used, trace_any, trace_closest};
@@ -80,6 +82,28 @@ fn a_random_soup_is_hit_as_by_brute_force() {
         let hits = compare(&scene, (0..4000).map(|_| random.ray(3.0)));
         assert!(hits > 30, "{hits} hits");
     }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn wide_registers_visit_what_narrow_ones_do() {
+    let Some(wide) = pulp::x86::V3::try_new() else { return };
+    let mut random = Random::new(9);
+    let data = bake(&scene_of(vec![soup(&mut random, 400, 0.2)])).expect("bakes");
+    let mut met = 0;
+    for _ in 0..2000 {
+        let ray = random.ray(2.0);
+        let level = prepare_ray(ray.origin, ray.direction);
+        for node in &data.nodes {
+            let [wide, narrow] = [
+                approx_intersect_node(wide, node, &level, MESH_MARGIN, ray.t_max),
+                approx_intersect_node(Portable, node, &level, MESH_MARGIN, ray.t_max),
+            ];
+            assert_eq!(wide, narrow, "{ray:?} {node:?}");
+            met += u32::from(wide != 0);
+        }
+    }
+    assert!(met > 1000, "only {met} nodes are met");
 }
 
 #[test]

@@ -31,6 +31,10 @@ use super::ray::LevelRay;
 use crate::layout::Node;
 use crate::shading::math::{max_, min_};
 use glam::{Vec2, Vec3};
+#[cfg(target_arch = "x86_64")]
+use pulp::x86::V3;
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::_CMP_NGT_UQ;
 use wide::{f32x4, f32x8, i16x8, i32x8, u8x16};
 
 /// 16 u: see the bound, step 3.
@@ -80,20 +84,68 @@ const PRIORITIES: [[u8; 256]; 8] = {
     table
 };
 
-/// Eight quantised planes, child 0 in the lowest byte.
-#[inline(always)]
-fn approx_planes(words: [u32; 2]) -> f32x8 {
-    let bytes: u8x16 = bytemuck::cast([words[0].to_le(), words[1].to_le(), 0, 0]);
-    f32x8::from_i32x8(i32x8::from_i16x8(i16x8::from_u8x16_low(bytes)))
+/// Eight boxes along a ray. On axis k it enters box i at t = `near[k][i]` `scale[k]` + `low[k]` and leaves it at
+/// `far[k][i]` `scale[k]` + `high[k]`; planes are bytes, box 0 in the lowest. Rust only.
+pub struct Slabs<'a> {
+    near: [&'a [u32; 2]; 3],
+    far: [&'a [u32; 2]; 3],
+    scale: [f32; 4],
+    low: [f32; 4],
+    high: [f32; 4],
 }
 
-/// The bits that eight children set if the ray meets their boxes. `near`, `far`: their intervals. Inner children set the bit of
-/// their priority in the top byte (Ylitie et al. 2017, section 3.3: slot xor octant), leaves one bit a primitive in the
-/// lower 24.
+/// What tests eight boxes at once: the registers that a machine has. Rust only.
+pub trait Eight: Copy {
+    /// One bit a box: whether the ray may be in it at a t from 0 to `t_max`. Written as "unless it misses": a NaN would be
+    /// visited.
+    fn approx_met(self, slabs: &Slabs, t_max: f32) -> u32;
+}
+
+/// With what every machine has.
+#[derive(Clone, Copy)]
+pub struct Portable;
+
+impl Eight for Portable {
+    #[inline(always)]
+    fn approx_met(self, slabs: &Slabs, t_max: f32) -> u32 {
+        let splat = f32x8::splat;
+        let planes = |words: &[u32; 2], k: usize, start: f32| {
+            let bytes: u8x16 = bytemuck::cast([words[0].to_le(), words[1].to_le(), 0, 0]);
+            f32x8::from_i32x8(i32x8::from_i16x8(i16x8::from_u8x16_low(bytes))) * splat(slabs.scale[k]) + splat(start)
+        };
+        let enter = planes(slabs.near[0], 0, slabs.low[0])
+            .fast_max(planes(slabs.near[1], 1, slabs.low[1]))
+            .fast_max(planes(slabs.near[2], 2, slabs.low[2]));
+        let leave = planes(slabs.far[0], 0, slabs.high[0])
+            .fast_min(planes(slabs.far[1], 1, slabs.high[1]))
+            .fast_min(planes(slabs.far[2], 2, slabs.high[2]));
+        !enter.fast_max(f32x8::ZERO).simd_gt(leave.fast_min(splat(t_max))).to_bitmask() & 255
+    }
+}
+
+/// With AVX2.
+#[cfg(target_arch = "x86_64")]
+impl Eight for V3 {
+    #[inline(always)]
+    fn approx_met(self, slabs: &Slabs, t_max: f32) -> u32 {
+        let (avx, splat) = (self.avx, |x: f32| self.avx._mm256_set1_ps(x));
+        let planes = |words: &[u32; 2], k: usize, start: f32| {
+            let bytes = self.sse2._mm_set_epi64x(0, bytemuck::cast(*words));
+            let planes = avx._mm256_cvtepi32_ps(self.avx2._mm256_cvtepu8_epi32(bytes));
+            avx._mm256_add_ps(avx._mm256_mul_ps(planes, splat(slabs.scale[k])), splat(start))
+        };
+        let enter = avx._mm256_max_ps(planes(slabs.near[0], 0, slabs.low[0]), planes(slabs.near[1], 1, slabs.low[1]));
+        let enter = avx._mm256_max_ps(avx._mm256_max_ps(enter, planes(slabs.near[2], 2, slabs.low[2])), splat(0.0));
+        let leave = avx._mm256_min_ps(planes(slabs.far[0], 0, slabs.high[0]), planes(slabs.far[1], 1, slabs.high[1]));
+        let leave = avx._mm256_min_ps(avx._mm256_min_ps(leave, planes(slabs.far[2], 2, slabs.high[2])), splat(t_max));
+        avx._mm256_movemask_ps(avx._mm256_cmp_ps::<_CMP_NGT_UQ>(enter, leave)) as u32
+    }
+}
+
+/// The bits that the children in the set `met` set. Inner children set the bit of their priority in the top byte (Ylitie et
+/// al. 2017, section 3.3: slot xor octant), leaves one bit a primitive in the lower 24.
 #[inline(always)]
-fn approx_hit_bits(node: &Node, octant: u32, near: f32x8, far: f32x8) -> u32 {
-    // Written as "unless it misses": a NaN would be visited.
-    let met = !near.simd_gt(far).to_bitmask() & 255;
+fn approx_hit_bits(node: &Node, octant: u32, met: u32) -> u32 {
     let inner = node.exponents_imask >> 24;
     let mut hits = u32::from(PRIORITIES[(octant & 7) as usize][(met & inner) as usize]) << 24;
     let meta = u64::from(node.child_meta[0]) | u64::from(node.child_meta[1]) << 32;
@@ -112,9 +164,8 @@ fn approx_hit_bits(node: &Node, octant: u32, near: f32x8, far: f32x8) -> u32 {
 /// section 3; the widening is ours (the bound above).
 #[inline(always)]
 #[allow(clippy::disallowed_methods, reason = "it chooses what to visit, never what is hit")]
-pub fn approx_intersect_node(node: &Node, ray: &LevelRay, margin: f32, t_max: f32) -> u32 {
+pub fn approx_intersect_node(eight: impl Eight, node: &Node, ray: &LevelRay, margin: f32, t_max: f32) -> u32 {
     let lanes = |v: Vec3| f32x4::new([v.x, v.y, v.z, 0.0]);
-    let splat = f32x8::splat;
     let exponents = node.exponents_imask;
     let step = f32x4::new([
         f32::from_bits((exponents & 0xff) << 23),
@@ -137,14 +188,6 @@ pub fn approx_intersect_node(node: &Node, ray: &LevelRay, margin: f32, t_max: f3
     let (near_x, far_x) = if ray.inverse.x < 0.0 { (&node.max_x, &node.min_x) } else { (&node.min_x, &node.max_x) };
     let (near_y, far_y) = if ray.inverse.y < 0.0 { (&node.max_y, &node.min_y) } else { (&node.min_y, &node.max_y) };
     let (near_z, far_z) = if ray.inverse.z < 0.0 { (&node.max_z, &node.min_z) } else { (&node.min_z, &node.max_z) };
-
-    let near = (approx_planes(*near_x) * splat(scale[0]) + splat(low[0]))
-        .fast_max(approx_planes(*near_y) * splat(scale[1]) + splat(low[1]))
-        .fast_max(approx_planes(*near_z) * splat(scale[2]) + splat(low[2]))
-        .fast_max(f32x8::ZERO);
-    let far = (approx_planes(*far_x) * splat(scale[0]) + splat(high[0]))
-        .fast_min(approx_planes(*far_y) * splat(scale[1]) + splat(high[1]))
-        .fast_min(approx_planes(*far_z) * splat(scale[2]) + splat(high[2]))
-        .fast_min(splat(t_max));
-    approx_hit_bits(node, ray.octant, near, far)
+    let slabs = Slabs { near: [near_x, near_y, near_z], far: [far_x, far_y, far_z], scale, low, high };
+    approx_hit_bits(node, ray.octant, eight.approx_met(&slabs, t_max))
 }

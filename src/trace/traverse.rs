@@ -8,13 +8,15 @@
 //! run every branch of a loop's body on each turn, whether a lane takes it or not, so what is rare has a loop of its own.
 //! They also postpone triangles, which lanes of their own need not: the order of tests cannot change a hit.
 
-use super::box_::{MESH_MARGIN, approx_intersect_node};
+use super::box_::{Eight, MESH_MARGIN, Portable, approx_intersect_node};
 use super::ray::{LevelRay, object_origin, prepare_ray, transform_vector, within_reach};
 use super::sphere::intersect_sphere;
 use super::triangle::intersect_triangle;
 use crate::layout::{Hit, INSTANCE_NO_SHADOW, INVALID, KIND_SPHERE, Ray, STACK_SIZE, SceneView, load_top_instance};
 use glam::UVec2;
-use pulp::{Arch, NullaryFnOnce};
+use pulp::NullaryFnOnce;
+#[cfg(target_arch = "x86_64")]
+use pulp::x86::V3;
 
 /// Groups put aside. Bake has proved that it is high enough.
 struct Stack {
@@ -115,6 +117,7 @@ fn test_sphere(ray: &Ray, level: &LevelRay, instance: u32, hit: &mut Hit) {
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "to read like its twin")]
 fn walk_mesh(
+    eight: impl Eight,
     scene: &SceneView,
     ray: &Ray,
     level: &LevelRay,
@@ -133,7 +136,7 @@ fn walk_mesh(
             stack.push(group, deepest);
         }
         let node = &scene.nodes[index as usize];
-        let hits = approx_intersect_node(node, level, MESH_MARGIN, hit.t);
+        let hits = approx_intersect_node(eight, node, level, MESH_MARGIN, hit.t);
         group = UVec2::new(node.child_base, (hits & 0xff00_0000) | (node.exponents_imask >> 24));
         let mut triangles = UVec2::new(node.primitive_base, hits & GROUP_EMPTY);
         while triangles.y != 0 && !(any && hit.instance != INVALID) {
@@ -152,14 +155,14 @@ fn walk_mesh(
 /// The closest hit, or with `any` any hit; with `casting` of an instance that casts a shadow.
 /// Rust only: `deepest` becomes the number of entries of either stack in use at the worst moment.
 #[inline(always)]
-fn traverse(scene: &SceneView, ray: &Ray, any: bool, casting: bool, deepest: &mut u32) -> Hit {
+fn traverse(eight: impl Eight, scene: &SceneView, ray: &Ray, any: bool, casting: bool, deepest: &mut u32) -> Hit {
     let mut hit = Hit { t: ray.t_max, instance: INVALID, ..Hit::default() };
     if scene.header.top_root == INVALID || !within_reach(ray.origin) {
         return hit;
     }
     // A lone instance needs no walk to be found.
     if scene.top_instances.len() == 1 {
-        enter_instance(scene, ray, 0, any, casting, &mut hit, deepest);
+        enter_instance(eight, scene, ray, 0, any, casting, &mut hit, deepest);
         return hit;
     }
     let mut stack = Stack::new();
@@ -180,13 +183,13 @@ fn traverse(scene: &SceneView, ray: &Ray, any: bool, casting: bool, deepest: &mu
                 stack.push(group, deepest);
             }
             let node = &scene.nodes[index as usize];
-            let hits = approx_intersect_node(node, &world, scene.header.top_margin, hit.t);
+            let hits = approx_intersect_node(eight, node, &world, scene.header.top_margin, hit.t);
             group = UVec2::new(node.child_base, (hits & 0xff00_0000) | (node.exponents_imask >> 24));
             instances = UVec2::new(node.primitive_base, hits & GROUP_EMPTY);
         }
 
         if instances.y != 0 {
-            enter_instance(scene, ray, take_primitive(&mut instances), any, casting, &mut hit, deepest);
+            enter_instance(eight, scene, ray, take_primitive(&mut instances), any, casting, &mut hit, deepest);
         }
         walking = (instances.y != 0 || group.y > GROUP_EMPTY || stack.len > 0) && !(any && hit.instance != INVALID);
     }
@@ -196,6 +199,7 @@ fn traverse(scene: &SceneView, ray: &Ray, any: bool, casting: bool, deepest: &mu
 /// Tests what stands at `place` of the top level's order; `hit` becomes the closer of it and what is found.
 #[inline(always)]
 fn enter_instance(
+    eight: impl Eight,
     scene: &SceneView,
     ray: &Ray,
     place: u32,
@@ -214,45 +218,58 @@ fn enter_instance(
     if record.kind == KIND_SPHERE {
         test_sphere(ray, &level, id, hit);
     } else {
-        walk_mesh(scene, ray, &level, id, record.root, any, hit, deepest);
+        walk_mesh(eight, scene, ray, &level, id, record.root, any, hit, deepest);
     }
 }
 
-/// One call of `traverse`, compiled for each set of vector instructions that this machine may have and run with the best it
-/// has: the same bits, since no compiler may fuse or reorder what is written. Rust only.
-struct Walk<'a, const ANY: bool, const CASTING: bool> {
+/// One call of `traverse`. Rust only.
+struct Walk<'a, E, const ANY: bool, const CASTING: bool> {
+    eight: E,
     scene: &'a SceneView<'a>,
     ray: &'a Ray,
 }
 
-impl<const ANY: bool, const CASTING: bool> NullaryFnOnce for Walk<'_, ANY, CASTING> {
+impl<E: Eight, const ANY: bool, const CASTING: bool> NullaryFnOnce for Walk<'_, E, ANY, CASTING> {
     type Output = Hit;
 
     #[inline(always)]
     fn call(self) -> Hit {
-        traverse(self.scene, self.ray, ANY, CASTING, &mut 0)
+        traverse(self.eight, self.scene, self.ray, ANY, CASTING, &mut 0)
+    }
+}
+
+impl<const ANY: bool, const CASTING: bool> Walk<'_, Portable, ANY, CASTING> {
+    /// The call, with the best vector instructions that this machine has: the same bits, since no compiler may fuse or reorder
+    /// what is written.
+    #[inline(always)]
+    fn run(self) -> Hit {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(eight) = V3::try_new() {
+            return eight.vectorize(Walk::<_, ANY, CASTING> { eight, scene: self.scene, ray: self.ray });
+        }
+        self.call()
     }
 }
 
 /// The closest hit of a ray at 0 < t <= t_max, with ties in t to the lower (instance, primitive);
 /// `instance == INVALID` for none.
 pub fn trace_closest(scene: &SceneView, ray: &Ray) -> Hit {
-    Arch::new().dispatch(Walk::<false, false> { scene, ray })
+    Walk::<_, false, false> { eight: Portable, scene, ray }.run()
 }
 
 /// Whether anything that casts shadows lies at 0 < t <= t_max.
 pub fn trace_any(scene: &SceneView, ray: &Ray) -> bool {
-    Arch::new().dispatch(Walk::<true, true> { scene, ray }).instance != INVALID
+    Walk::<_, true, true> { eight: Portable, scene, ray }.run().instance != INVALID
 }
 
 /// The closest hit of what casts shadows, as `trace_closest`.
 pub fn trace_occluder(scene: &SceneView, ray: &Ray) -> Hit {
-    Arch::new().dispatch(Walk::<false, true> { scene, ray })
+    Walk::<_, false, true> { eight: Portable, scene, ray }.run()
 }
 
 /// Stack entries that the ray's closest hit needed: what bake's `stack_depth` bounds. Rust only, for tests.
 pub fn stack_used(scene: &SceneView, ray: &Ray) -> u32 {
     let mut deepest = 0;
-    traverse(scene, ray, false, false, &mut deepest);
+    traverse(Portable, scene, ray, false, false, &mut deepest);
     deepest
 }
