@@ -198,6 +198,7 @@ fn traverse(eight: impl Eight, scene: &SceneView, ray: &Ray, any: bool, casting:
 
 /// Tests what stands at `place` of the top level's order; `hit` becomes the closer of it and what is found.
 #[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "to read like its twin")]
 fn enter_instance(
     eight: impl Eight,
     scene: &SceneView,
