@@ -283,7 +283,15 @@ impl Context {
             let commands = [self.commands];
             let submit = vk::SubmitInfo::default().command_buffers(&commands);
             raw.queue_submit(self.queue, &[submit], self.fence).map_err(failed())?;
-            if let Err(error) = raw.wait_for_fences(&[self.fence], true, TIMEOUT.as_nanos() as u64) {
+            // A second at a time: a process that is stopped and goes on later (Ctrl-Z) has waited for one of them only.
+            let mut ended = Err(vk::Result::TIMEOUT);
+            for _ in 0..TIMEOUT.as_secs() {
+                ended = raw.wait_for_fences(&[self.fence], true, 1_000_000_000);
+                if ended != Err(vk::Result::TIMEOUT) {
+                    break;
+                }
+            }
+            if let Err(error) = ended {
                 self.device.stuck.store(error == vk::Result::TIMEOUT, Ordering::Relaxed);
                 return Err(match error {
                     vk::Result::TIMEOUT => VulkanError::Device(format!(
