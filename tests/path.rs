@@ -288,9 +288,11 @@ fn direct_is_path_with_one_scattering_event() {
     let light = object(Geometry::Sphere, Transform::translate(Vec3::Y * 3.0));
     let mut scene = lit_floor(Some((light, glow(2.0))), 1);
     // A wall, which would light the floor by a second event.
-    let wall = Transform::rotate(Vec3::X, 90.0).then(Transform::translate(Vec3::Z * -1.0));
+    let wall = Transform::rotate(Vec3::X, std::f64::consts::FRAC_PI_2).then(Transform::translate(Vec3::Z * -1.0));
     scene.objects.push(object(Geometry::Mesh(MeshId(0)), wall));
     let path = render_cpu(&scene, &bake(&scene).unwrap());
+    scene.settings.max_depth = 2;
+    assert!(path.sums() != render_cpu(&scene, &bake(&scene).unwrap()).sums(), "a second event shows");
     (scene.settings.integrator, scene.settings.max_depth) = (Integrator::Direct, 9);
     assert!(path.sums() == render_cpu(&scene, &bake(&scene).unwrap()).sums());
 }
