@@ -69,6 +69,15 @@ fn reciprocals_are_within_their_bound() {
 }
 
 #[test]
+fn reciprocals_of_three_numbers_are_those_of_each() {
+    let bits = |v: [f32; 3]| v.map(f32::to_bits);
+    for x in floats(TINY, HUGE, 9973).chain(WILD) {
+        let v = Vec3::new(x, -1.5 * x, 3.0 - x);
+        assert_eq!(bits(rcp_each(v).to_array()), bits(v.to_array().map(rcp)), "{v}");
+    }
+}
+
+#[test]
 fn quotients_are_within_their_bound() {
     let pairs = floats(1e-18, 1e18, 600_011).flat_map(|a| floats(1e-10, 1e10, 500_057).map(move |b| (a, -b)));
     assert_within(0.51, pairs, |(a, b)| ulps(div(*a, -*b), *a as f64 / -*b as f64));

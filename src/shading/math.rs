@@ -9,6 +9,7 @@
 //! magnitudes from `TINY` to `HUGE` only, where none occurs.
 
 use glam::{Vec2, Vec3};
+use wide::{f32x4, u32x4};
 
 pub const PI: f32 = 3.14159274;
 pub const TWO_PI: f32 = 6.28318548;
@@ -69,6 +70,23 @@ pub fn rcp(x: f32) -> f32 {
     let residual = (1.0 - y_high * x_high) - y_high * (x - x_high);
     let refined = y_high + residual * y;
     if x.abs() >= TINY && x.abs() <= HUGE { refined } else { 0.0 }
+}
+
+/// `rcp` of each component, all at a time. Rust only: devices have lanes enough.
+#[inline(always)]
+pub fn rcp_each(v: Vec3) -> Vec3 {
+    let splat = f32x4::splat;
+    let high = |x: f32x4| x & splat(f32::from_bits(0xfffff000));
+    let x = f32x4::new([v.x, v.y, v.z, 1.0]);
+    let y: f32x4 = bytemuck::cast(u32x4::splat(0x7ef22b00) - bytemuck::cast::<_, u32x4>(x));
+    let y = y * (splat(2.0015) - x * y);
+    let y = y * (splat(2.0) - x * y);
+    let (y_high, x_high) = (high(y), high(x));
+    let residual = (splat(1.0) - y_high * x_high) - y_high * (x - x_high);
+    let refined = y_high + residual * y;
+    let size = x.abs();
+    let [x, y, z, _] = (refined & size.simd_ge(splat(TINY)) & size.simd_le(splat(HUGE))).to_array();
+    Vec3::new(x, y, z)
 }
 
 /// a / b within 0.51 ULP for |b| in TINY..HUGE; exact where the quotient is a float.

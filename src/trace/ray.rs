@@ -1,7 +1,7 @@
 //! A ray as one level of the hierarchy sees it.
 
 use crate::layout::Instance;
-use crate::shading::math::{max_, rcp};
+use crate::shading::math::{max_, rcp_each};
 use glam::{Vec3, Vec4};
 
 /// Components of a direction smaller than this part of the largest one (2^-40) become 0, and their reciprocals that of
@@ -29,6 +29,8 @@ pub struct LevelRay {
     pub sx: f32,
     pub sy: f32,
     pub sz: f32,
+    /// Components kx, ky and kz of the origin. Rust only.
+    pub permuted_origin: Vec3,
     /// In each of four bytes, bits 4, 2, 1: the x, y, z of `inverse` is not negative.
     pub octant: u32,
 }
@@ -36,13 +38,8 @@ pub struct LevelRay {
 /// Component `k` (0 to 2) of `v`.
 #[inline(always)]
 pub fn component(v: Vec3, k: u32) -> f32 {
-    if k == 0 {
-        v.x
-    } else if k == 1 {
-        v.y
-    } else {
-        v.z
-    }
+    // No branch: along which axis a ray runs cannot be foretold.
+    v.to_array()[(k as usize).min(2)]
 }
 
 /// `x`, or `least` with the sign of `x` if `x` is smaller.
@@ -67,15 +64,16 @@ pub fn prepare_ray(origin: Vec3, direction: Vec3) -> LevelRay {
     let x = at_least(direction.x, least);
     let y = at_least(direction.y, least);
     let z = at_least(direction.z, least);
-    let inverse = Vec3::new(rcp(x), rcp(y), rcp(z));
-    let kz = if ax > ay { if ax > az { 0 } else { 2 } } else { if ay > az { 1 } else { 2 } };
+    let inverse = rcp_each(Vec3::new(x, y, z));
+    let kz = if max_(ax, ay) > az { u32::from(!(ax > ay)) } else { 2 };
     let kx = if kz == 2 { 0 } else { kz + 1 };
     let ky = if kx == 2 { 0 } else { kx + 1 };
     let sz = component(inverse, kz);
     let sx = component(d, kx) * sz;
     let sy = component(d, ky) * sz;
     let bits = (if x < 0.0 { 0 } else { 4 }) | (if y < 0.0 { 0 } else { 2 }) | (if z < 0.0 { 0 } else { 1 });
-    LevelRay { origin, direction: d, inverse, kz, kx, ky, sx, sy, sz, octant: bits * 0x0101_0101 }
+    let permuted_origin = Vec3::new(component(origin, kx), component(origin, ky), component(origin, kz));
+    LevelRay { origin, direction: d, inverse, kz, kx, ky, sx, sy, sz, permuted_origin, octant: bits * 0x0101_0101 }
 }
 
 /// Whether a ray starts close enough for the level's arithmetic: every component within 2^40.

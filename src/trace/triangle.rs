@@ -1,7 +1,7 @@
 //! The watertight ray-triangle test.
 
 use super::box_::box_interval;
-use super::ray::{LevelRay, component};
+use super::ray::LevelRay;
 use crate::shading::math::{clamp_, max_, min_, rcp};
 use glam::Vec3;
 use wide::f32x4;
@@ -13,11 +13,11 @@ const TRIANGLE_MISS: Vec3 = Vec3::new(-1.0, 0.0, 0.0);
 
 /// Twice the signed areas of (c, b), (a, c) and (b, a) as seen along the ray, of the corners in lanes 0 to 2 of `x` and `y`;
 /// the device computes them one by one. The area of (q, p) is exactly the negative of that of (p, q), so a ray between two
-/// triangles that share an edge is on one side for one of them.
+/// triangles that share an edge is on one side for one of them. Lane 3 becomes 0 or a NaN, which is on neither side.
 #[inline(always)]
 fn signed_area(x: f32x4, y: f32x4) -> f32x4 {
-    let p = |v: f32x4| f32x4::new([v.to_array()[2], v.to_array()[0], v.to_array()[1], 0.0]);
-    let q = |v: f32x4| f32x4::new([v.to_array()[1], v.to_array()[2], v.to_array()[0], 0.0]);
+    let p = |v: f32x4| f32x4::new([v.to_array()[2], v.to_array()[0], v.to_array()[1], v.to_array()[3]]);
+    let q = |v: f32x4| f32x4::new([v.to_array()[1], v.to_array()[2], v.to_array()[0], v.to_array()[3]]);
     let area = p(x) * q(y) - p(y) * q(x);
     area & !area.abs().simd_lt(f32x4::splat(EDGE_LEAST))
 }
@@ -33,13 +33,13 @@ pub fn intersect_triangle(ray: &LevelRay, v0: &Vec3, v1: &Vec3, v2: &Vec3) -> Ve
     let corners: [&[f32; 3]; 3] = [v0.as_ref(), v1.as_ref(), v2.as_ref()];
     let along = |k: u32| {
         let k = (k as usize).min(2);
-        let origin = f32x4::splat(component(ray.origin, k as u32));
-        f32x4::new([corners[0][k], corners[1][k], corners[2][k], 0.0]) - origin
+        f32x4::new([corners[0][k], corners[1][k], corners[2][k], 0.0])
     };
+    let [origin_x, origin_y, origin_z] = ray.permuted_origin.to_array();
     // Section 3.3: shear and permute.
-    let z = along(ray.kz);
-    let x = along(ray.kx) - f32x4::splat(ray.sx) * z;
-    let y = along(ray.ky) - f32x4::splat(ray.sy) * z;
+    let z = along(ray.kz) - f32x4::splat(origin_z);
+    let x = (along(ray.kx) - f32x4::splat(origin_x)) - f32x4::splat(ray.sx) * z;
+    let y = (along(ray.ky) - f32x4::splat(origin_y)) - f32x4::splat(ray.sy) * z;
     // Section 3.4: scaled barycentric coordinates.
     let areas = signed_area(x, y);
     let negative = areas.simd_lt(f32x4::ZERO).to_bitmask();
