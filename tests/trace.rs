@@ -8,7 +8,7 @@ use gonio::bake::bake;
 use gonio::layout::*;
 use gonio::scene::{Geometry, Mesh, Scene, Transform};
 #[cfg(target_arch = "x86_64")]
-use gonio::trace::box_::{MESH_MARGIN, Portable, approx_intersect_node};
+use gonio::trace::box_::{MESH_MARGIN, Portable, approx_intersect_node, approx_widening};
 use gonio::trace::ray::{object_origin, prepare_ray, transform_vector, within_reach};
 use gonio::trace::sphere::intersect_sphere;
 use gonio::trace::traverse::{stack_used, trace_any, trace_closest};
@@ -95,9 +95,10 @@ fn wide_registers_visit_what_narrow_ones_do() {
         let ray = random.ray(2.0);
         let level = prepare_ray(ray.origin, ray.direction);
         for node in &data.nodes {
+            let widening = approx_widening(node, &level, MESH_MARGIN);
             let [wide, narrow] = [
-                approx_intersect_node(wide, node, &level, MESH_MARGIN, ray.t_max),
-                approx_intersect_node(Portable, node, &level, MESH_MARGIN, ray.t_max),
+                approx_intersect_node(wide, node, &level, widening, ray.t_max),
+                approx_intersect_node(Portable, node, &level, widening, ray.t_max),
             ];
             assert_eq!(wide, narrow, "{ray:?} {node:?}");
             met += u32::from(wide != 0);

@@ -91,6 +91,7 @@ void test_sphere(Ray ray, LevelRay level, uint instance, inout Hit hit) {
 void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inout Hit hit) {
     uvec2 stack[STACK_DEPTH + 1u];
     uint height = 0u;
+    vec3 widening = approx_widening(load_node(root), level, MESH_MARGIN);
     uvec2 group = uvec2(root, GROUP_ROOT);
     // What waits to be tested, the last found first. Lanes wait for one another at the end of either loop; what each
     // may put aside evens out what they wait for.
@@ -105,7 +106,7 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
             stack[height] = group;
             height += group.y > GROUP_EMPTY ? 1u : 0u;
             Node node = load_node(index);
-            uint hits = approx_intersect_node(node, level, MESH_MARGIN, hit.t);
+            uint hits = approx_intersect_node(node, level, widening, hit.t);
             group = uvec2(node.child_base, (hits & 0xff000000u) | (node.exponents_imask >> 24u));
             if ((hits & GROUP_EMPTY) != 0u) {
                 triangles2 = triangles1;
@@ -172,6 +173,7 @@ Hit traverse(Ray ray, bool any, bool casting) {
     uvec2 stack[STACK_DEPTH];
     uint height = 0u;
     LevelRay world = prepare_ray(ray.origin, ray.direction);
+    vec3 widening = approx_widening(load_node(header.top_root), world, header.top_margin);
     uvec2 group = uvec2(header.top_root, GROUP_ROOT);
     uvec2 instances = uvec2(0u);
     for (uint turn = 0u; turn < TURNS_MOST; turn++) {
@@ -188,7 +190,7 @@ Hit traverse(Ray ray, bool any, bool casting) {
                     height += 1u;
                 }
                 Node node = load_node(index);
-                uint hits = approx_intersect_node(node, world, header.top_margin, hit.t);
+                uint hits = approx_intersect_node(node, world, widening, hit.t);
                 group = uvec2(node.child_base, (hits & 0xff000000u) | (node.exponents_imask >> 24u));
                 instances = uvec2(node.primitive_base, hits & GROUP_EMPTY);
             }

@@ -8,7 +8,7 @@
 //! run every branch of a loop's body on each turn, whether a lane takes it or not, so what is rare has a loop of its own.
 //! They also postpone triangles, which lanes of their own need not: the order of tests cannot change a hit.
 
-use super::box_::{Eight, MESH_MARGIN, Portable, approx_intersect_node};
+use super::box_::{Eight, MESH_MARGIN, Portable, approx_intersect_node, approx_widening};
 use super::ray::{LevelRay, object_origin, prepare_ray, transform_vector, within_reach};
 use super::sphere::intersect_sphere;
 use super::triangle::intersect_triangle;
@@ -128,6 +128,7 @@ fn walk_mesh(
     deepest: &mut u32,
 ) {
     let mut stack = Stack::new();
+    let widening = approx_widening(&scene.nodes[root as usize], level, MESH_MARGIN);
     let mut group = UVec2::new(root, GROUP_ROOT);
     let mut walking = true;
     while walking {
@@ -136,7 +137,7 @@ fn walk_mesh(
             stack.push(group, deepest);
         }
         let node = &scene.nodes[index as usize];
-        let hits = approx_intersect_node(eight, node, level, MESH_MARGIN, hit.t);
+        let hits = approx_intersect_node(eight, node, level, widening, hit.t);
         group = UVec2::new(node.child_base, (hits & 0xff00_0000) | (node.exponents_imask >> 24));
         let mut triangles = UVec2::new(node.primitive_base, hits & GROUP_EMPTY);
         while triangles.y != 0 && !(any && hit.instance != INVALID) {
@@ -167,6 +168,7 @@ fn traverse(eight: impl Eight, scene: &SceneView, ray: &Ray, any: bool, casting:
     }
     let mut stack = Stack::new();
     let world = prepare_ray(ray.origin, ray.direction);
+    let widening = approx_widening(&scene.nodes[scene.header.top_root as usize], &world, scene.header.top_margin);
     let mut group = UVec2::new(scene.header.top_root, GROUP_ROOT);
     let mut instances = UVec2::ZERO;
     let mut walking = true;
@@ -183,7 +185,7 @@ fn traverse(eight: impl Eight, scene: &SceneView, ray: &Ray, any: bool, casting:
                 stack.push(group, deepest);
             }
             let node = &scene.nodes[index as usize];
-            let hits = approx_intersect_node(eight, node, &world, scene.header.top_margin, hit.t);
+            let hits = approx_intersect_node(eight, node, &world, widening, hit.t);
             group = UVec2::new(node.child_base, (hits & 0xff00_0000) | (node.exponents_imask >> 24));
             instances = UVec2::new(node.primitive_base, hits & GROUP_EMPTY);
         }
