@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 /// device compiles at the first dispatch, and for a scene in many pages that takes minutes on a busy machine.
 const TIMEOUT: Duration = Duration::from_secs(600);
 /// Bytes that travel through the staging buffers at a time.
-const STAGING: u64 = 16 << 20;
+const STAGING: u64 = 8 << 20;
 /// Timestamps one submission may take.
 const QUERIES: u32 = 1024;
 
@@ -158,8 +158,9 @@ pub struct Context {
     fence: vk::Fence,
     queries: Option<vk::QueryPool>,
     queue: vk::Queue,
-    upload: Option<Buffer>,
-    readback: Option<Buffer>,
+    /// Two of each, so that the host copies to or from one while the device does with the other.
+    upload: Option<[Buffer; 2]>,
+    readback: Option<[Buffer; 2]>,
     /// What `run_kernel` has compiled, by SPIR-V and bytes of push constants.
     kernels: HashMap<(Vec<u32>, usize), Kernel>,
     device: Arc<Device>,
@@ -253,6 +254,16 @@ impl Context {
 
     /// Records, submits and waits. `what` is what errors say was being done.
     pub fn submit<'r>(&'r mut self, what: &str, record: impl FnOnce(&Recorder<'r>)) -> Result<Submission, VulkanError> {
+        self.submit_while(what, record, || ())
+    }
+
+    /// `submit`, with `meanwhile` on the host while the device works.
+    fn submit_while<'r>(
+        &'r mut self,
+        what: &str,
+        record: impl FnOnce(&Recorder<'r>),
+        meanwhile: impl FnOnce(),
+    ) -> Result<Submission, VulkanError> {
         let raw = self.device.raw();
         let failed = || VulkanError::call(what.to_owned());
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
@@ -283,6 +294,7 @@ impl Context {
             let commands = [self.commands];
             let submit = vk::SubmitInfo::default().command_buffers(&commands);
             raw.queue_submit(self.queue, &[submit], self.fence).map_err(failed())?;
+            meanwhile();
             // A second at a time: a process that is stopped and goes on later (Ctrl-Z) has waited for one of them only.
             let mut ended = Err(vk::Result::TIMEOUT);
             for _ in 0..TIMEOUT.as_secs() {
@@ -320,28 +332,30 @@ impl Context {
         Ok(ticks.iter().map(seconds).collect())
     }
 
-    fn staging(&mut self, place: Place) -> Result<Buffer, VulkanError> {
+    fn staging(&mut self, place: Place) -> Result<[Buffer; 2], VulkanError> {
         let (slot, name) = match place {
             Place::Upload => (&mut self.upload, "upload buffer"),
             _ => (&mut self.readback, "readback buffer"),
         };
-        if let Some(buffer) = slot {
-            return Ok(buffer.clone());
+        if let Some(buffers) = slot {
+            return Ok(buffers.clone());
         }
-        let buffer = Buffer::new(&self.device, name, STAGING, place)?;
-        Ok(slot.insert(buffer).clone())
+        let make = || Buffer::new(&self.device, name, STAGING, place);
+        Ok(slot.insert([make()?, make()?]).clone())
     }
 
     /// Writes `bytes` (whole 4-byte words) to a device buffer.
     pub fn upload(&mut self, to: &Buffer, offset: u64, bytes: &[u8]) -> Result<(), VulkanError> {
         let staging = self.staging(Place::Upload)?;
+        let mut parts = bytes.chunks(STAGING as usize).zip(staging.iter().cycle()).peekable();
+        let fill = |next: Option<&(&[u8], &Buffer)>| next.into_iter().for_each(|(part, buffer)| buffer.write(part));
+        fill(parts.peek());
         let mut at = offset;
-        for part in bytes.chunks(STAGING as usize) {
-            staging.write(part);
-            self.submit(&format!("uploading {}", to.name()), |r| {
-                r.copy(&staging, 0, to, at, part.len() as u64);
-            })?;
-            at += part.len() as u64;
+        while let Some((part, buffer)) = parts.next() {
+            let size = part.len() as u64;
+            let what = format!("uploading {}", to.name());
+            self.submit_while(&what, |r| r.copy(buffer, 0, to, at, size), || fill(parts.peek()))?;
+            at += size;
         }
         Ok(())
     }
@@ -350,14 +364,17 @@ impl Context {
     pub fn download(&mut self, from: &Buffer, offset: u64, bytes: u64) -> Result<Vec<u8>, VulkanError> {
         let staging = self.staging(Place::Readback)?;
         let mut data = vec![0; bytes as usize];
+        let empty = |full: Option<(&mut [u8], &Buffer)>| full.into_iter().for_each(|(part, buffer)| buffer.read(part));
+        let mut full = None;
         let mut at = offset;
-        for part in data.chunks_mut(STAGING as usize) {
-            self.submit(&format!("reading {}", from.name()), |r| {
-                r.copy(from, at, &staging, 0, part.len() as u64);
-            })?;
-            staging.read(part);
-            at += part.len() as u64;
+        for (part, buffer) in data.chunks_mut(STAGING as usize).zip(staging.iter().cycle()) {
+            let (size, last) = (part.len() as u64, full.take());
+            let what = format!("reading {}", from.name());
+            self.submit_while(&what, |r| r.copy(from, at, buffer, 0, size), || empty(last))?;
+            full = Some((part, buffer));
+            at += size;
         }
+        empty(full);
         Ok(data)
     }
 

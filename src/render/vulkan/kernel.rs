@@ -8,7 +8,7 @@ use crate::shaders;
 use ash::vk;
 use std::sync::Arc;
 
-/// Specialisation constant 0 of every kernel: invocations in a workgroup.
+/// Specialisation constant 0 of every kernel: invocations in a workgroup. On lavapipe 32 to 1024 take the same time.
 pub const WORKGROUP: u32 = 64;
 
 /// A compute pipeline; a cheap handle to share.
