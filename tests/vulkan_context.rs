@@ -6,7 +6,7 @@ mod device;
 use gonio::bake::SceneData;
 use gonio::layout::{Node, PathState, SceneHeader, Triangle};
 use gonio::render::vulkan::{
-    BindingKind, Bound, BufferSpec, FetchChoice, Instance, Place, STORAGE_FETCH_STORAGE_BUFFERS, SceneBuffers,
+    Binding, BindingKind, Bound, BufferSpec, FetchChoice, Instance, Place, STORAGE_FETCH_STORAGE_BUFFERS, SceneBuffers,
     TEXEL_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_TEXEL_BUFFERS, VulkanError, WORKGROUP, bindings,
 };
 use gonio::shaders::{self, Fetch};
@@ -208,11 +208,15 @@ fn kernels_bind_no_more_than_devices_are_asked_for() {
             let count = |kind| found.iter().filter(|b| b.kind == kind).map(|b| b.count).sum::<u32>();
             largest[at] = count(BindingKind::StorageBuffer).max(largest[at]);
             largest[at + 1] = count(BindingKind::TexelBuffer).max(largest[at + 1]);
+            // The specification's minimum is 12.
+            assert!(count(BindingKind::UniformBuffer) <= 1, "{name} binds {found:?}");
         }
     }
     let [storage, storage_texel, texel_storage, texel] = largest;
     assert!(storage <= STORAGE_FETCH_STORAGE_BUFFERS && storage_texel == 0, "storage fetch binds {largest:?}");
     assert!(texel_storage <= TEXEL_FETCH_STORAGE_BUFFERS && texel <= TEXEL_FETCH_TEXEL_BUFFERS, "texel: {largest:?}");
+    let shade = bindings(shaders::kernel("shade", Fetch::Texel).expect("embedded")).unwrap();
+    assert_eq!(shade[0], Binding { set: 0, binding: 0, kind: BindingKind::UniformBuffer, count: 1 });
     assert!(storage > TEXEL_FETCH_STORAGE_BUFFERS, "a kernel fetches the scene: {largest:?}");
 }
 

@@ -72,7 +72,8 @@ layout(constant_id = 30) const uint SHADE_MODEL = 0xffffffffu;
 #define NAME_MODEL(material) if (SHADE_MODEL != INVALID) material.model = SHADE_MODEL;
 
 // Set 0: the scene.
-layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };
+// Uniform and not storage: CPU devices load from storage lane by lane, even where all lanes want the same.
+layout(set = 0, binding = 0, scalar) uniform HeaderBlock { SceneHeader header; };
 #ifdef FETCH_TEXEL
 layout(set = 0, binding = 1) uniform usamplerBuffer node_pages[8];
 layout(set = 0, binding = 2) uniform usamplerBuffer triangle_pages[8];

@@ -8,6 +8,8 @@ use crate::shaders;
 use ash::vk;
 use std::sync::Arc;
 
+/// Bytes of a uniform buffer that every device allows.
+const UNIFORM_RANGE: u64 = 16_384;
 /// Specialisation constant 0 of every kernel: invocations in a workgroup. On lavapipe 32 to 1024 take the same time.
 pub const WORKGROUP: u32 = 64;
 
@@ -84,7 +86,7 @@ fn check_limits(device: &Device, name: &str, bindings: &[Binding]) -> Result<(),
     for (what, needed, limit) in [
         ("storage buffers", storage, limits.stage_storage_buffers),
         ("texel buffers", texel, limits.stage_texel_buffers),
-        ("bindings", storage + texel, limits.stage_resources),
+        ("bindings", storage + texel + count(BindingKind::UniformBuffer), limits.stage_resources),
     ] {
         if needed > limit {
             return Err(VulkanError::Device(format!("kernel {name} binds {needed} {what}; the device allows {limit}")));
@@ -170,6 +172,7 @@ impl Drop for Inner {
 fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     match kind {
         BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
+        BindingKind::UniformBuffer => vk::DescriptorType::UNIFORM_BUFFER,
         BindingKind::TexelBuffer => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
     }
 }
@@ -235,12 +238,16 @@ impl Bound {
             .dst_set(set)
             .dst_binding(binding.binding)
             .descriptor_type(descriptor_type(binding.kind));
-        let limit = device.info().limits.storage_range;
+        let limits = device.info().limits;
         match binding.kind {
-            BindingKind::StorageBuffer => {
+            BindingKind::StorageBuffer | BindingKind::UniformBuffer => {
+                let (what, limit) = match binding.kind {
+                    BindingKind::UniformBuffer => ("uniform", UNIFORM_RANGE),
+                    _ => ("storage", limits.storage_range),
+                };
                 if let Some(buffer) = all.iter().find(|buffer| buffer.size() > limit) {
                     return Err(VulkanError::Device(format!(
-                        "{} has {} bytes; a storage buffer of this device holds {limit}",
+                        "{} has {} bytes; a {what} buffer of this device holds {limit}",
                         buffer.name(),
                         buffer.size()
                     )));

@@ -8,6 +8,7 @@ use std::collections::{HashMap, HashSet};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BindingKind {
     StorageBuffer,
+    UniformBuffer,
     TexelBuffer,
 }
 
@@ -36,10 +37,11 @@ pub fn bindings(words: &[u32]) -> Result<Vec<Binding>, String> {
         let Some(&Operand::StorageClass(class)) = variable.operands.first() else {
             continue;
         };
-        if !used.contains(&id) || !matches!(class, StorageClass::StorageBuffer | StorageClass::UniformConstant) {
+        let bound = [StorageClass::StorageBuffer, StorageClass::Uniform, StorageClass::UniformConstant];
+        if !used.contains(&id) || !bound.contains(&class) {
             continue;
         }
-        let unknown = || format!("variable %{id} is neither a storage buffer nor a texel buffer");
+        let unknown = || format!("variable %{id} is neither a storage, a uniform nor a texel buffer");
         let pointee = variable.result_type.and_then(|id| types.get(&id)).and_then(|pointer| id_operand(pointer, 1));
         let mut record = *pointee.and_then(|id| types.get(&id)).ok_or_else(unknown)?;
         let mut count = 1;
@@ -55,6 +57,7 @@ pub fn bindings(words: &[u32]) -> Result<Vec<Binding>, String> {
             record = id_operand(record, 0).and_then(|id| types.get(&id)).ok_or_else(unknown)?;
         }
         let kind = match record.class.opcode {
+            Op::TypeStruct if class == StorageClass::Uniform => BindingKind::UniformBuffer,
             Op::TypeStruct => BindingKind::StorageBuffer,
             Op::TypeImage if record.operands.get(1) == Some(&Operand::Dim(Dim::DimBuffer)) => BindingKind::TexelBuffer,
             _ => return Err(unknown()),
