@@ -192,6 +192,23 @@ fn every_shader_file_has_its_include_guard() {
     }
 }
 
+/// Whether a kernel reads what its lanes share before any of them is masked (ARCHITECTURE.md, "What lanes share").
+fn begins(kernel: &str) -> bool {
+    kernel.contains("void main() {\n    begin();\n") || kernel.contains("void main() {\n    begin_round();\n")
+}
+
+#[test]
+fn every_kernel_that_reads_a_scene_begins_by_reading_what_lanes_share() {
+    let kernels = sources("shaders/kernels", &["comp"]);
+    let wrong: Vec<_> = kernels
+        .iter()
+        .filter(|file| file.text.contains("#include \"kernels/bindings.glsl\"") && !begins(&file.text))
+        .map(|file| &file.path)
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:?} do not");
+    assert!(!begins("void main() {\n    if (header.aovs != 0u) return;\n    begin();\n"));
+}
+
 #[test]
 fn no_file_is_longer_than_500_lines_and_no_kernel_than_80() {
     let mut found = Vec::new();

@@ -181,7 +181,7 @@ fn the_device_clock_does_not_run_backwards() {
     let submission = context
         .submit("clearing", |r| {
             r.timestamp();
-            r.clear(&buffer);
+            r.clear(&buffer, buffer.size());
             r.timestamp();
         })
         .unwrap();

@@ -7,6 +7,7 @@
 #include "trace/traverse.glsl"
 
 void main() {
+    begin();
     uint i = gl_GlobalInvocationID.x;
     if (i >= batch.slot_count) return;
     uint at = batch.first_pixel + i;

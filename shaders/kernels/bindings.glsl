@@ -8,6 +8,8 @@
 #define KERNELS_BINDINGS_GLSL
 #define GONIO_FETCH
 
+uvec4 fetch_header(uint at);
+uvec4 fetch_batch(uint at);
 #include "layout/control.glsl"
 #include "layout/header.glsl"
 
@@ -62,6 +64,8 @@ layout(constant_id = 26) const bool SCENE_SHADOWLESS = true;
 layout(constant_id = 27) const bool SCENE_HIDES_EMITTERS = true;
 // Contributions have a limit.
 layout(constant_id = 28) const bool SCENE_HAS_CLAMP = true;
+// Whether extend makes the camera rays of its chunk, or reads what waited.
+layout(constant_id = 32) const bool EXTEND_CAMERA = false;
 // Whether paths are shaded in groups by the model they hit, each by a kernel that has its models for `MODELS_PRESENT`.
 layout(constant_id = 31) const bool SHADE_GROUPED = false;
 // Which of them a kernel shades.
@@ -72,8 +76,11 @@ layout(constant_id = 30) const uint SHADE_MODEL = 0xffffffffu;
 #define NAME_MODEL(material) if (SHADE_MODEL != INVALID) material.model = SHADE_MODEL;
 
 // Set 0: the scene.
-// Uniform and not storage: CPU devices load from storage lane by lane, even where all lanes want the same.
-layout(set = 0, binding = 0, scalar) uniform HeaderBlock { SceneHeader header; };
+layout(set = 0, binding = 0) uniform HeaderBlock { uvec4 header_words[SCENE_HEADER_WORDS]; };
+// Plus 0, which no driver knows, lest branches hang on uniforms alone (ARCHITECTURE.md, "What lanes share").
+uvec4 fetch_header(uint at) { return header_words[at] + gl_WorkGroupID.y; }
+// Read by `begin`, while no lane is masked.
+SceneHeader header;
 #ifdef FETCH_TEXEL
 layout(set = 0, binding = 1) uniform usamplerBuffer node_pages[8];
 layout(set = 0, binding = 2) uniform usamplerBuffer triangle_pages[8];
@@ -154,6 +161,15 @@ layout(set = 1, binding = 7, scalar) coherent buffer AovBlock { AovPixel aovs[];
 
 layout(set = 1, binding = 12, scalar) buffer OrderBlock { uint order[]; };
 
-layout(push_constant, scalar) uniform BatchBlock { Batch batch; };
+layout(push_constant) uniform BatchBlock { uvec4 batch_words[BATCH_WORDS]; };
+// As `fetch_header`.
+uvec4 fetch_batch(uint at) { return batch_words[at] + gl_WorkGroupID.y; }
+Batch batch;
+
+// To be called before anything else.
+void begin() {
+    header = load_scene_header(0u);
+    batch = load_batch(0u);
+}
 
 #endif

@@ -1,12 +1,13 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// The closest hit of every ray in the chunk, and the group in which it is shaded, if there are groups. Copies the chunk out of its level, so that
-// shade may append to that level.
+// The closest hit of every ray in the chunk, and the group in which it is shaded, if there are groups. What waited is copied
+// out of its level, so that shade may append to that level; camera rays are made here, where they are first needed.
 #define PATHS_FROM_LEVELS
 #include "kernels/bindings.glsl"
 #include "kernels/queues.glsl"
 #include "trace/traverse.glsl"
+#include "transport/generate.glsl"
 
 // The group of what was hit: models that the scene has are numbered in their order.
 uint shade_group(Hit hit) {
@@ -18,10 +19,31 @@ uint shade_group(Hit hit) {
     return 1u + uint(bitCount(MODELS_PRESENT & ~(0xffffffffu << model)));
 }
 
+// The path of the sample in `slot`.
+PathState begin_path(uint slot) {
+    PathState path = generate(batch, slot);
+    if (SCENE_HAS_AOVS && path.sample_index == 0u) {
+        uint index = slot_pixel(batch, slot);
+        aovs[index].depth = T_INFINITE;
+        aovs[index].object = INVALID;
+        aovs[index].material = INVALID;
+    }
+    return path;
+}
+
 void main() {
+    begin_round();
+    uint stored = control.chunk_stored;
+    uint first = EXTEND_CAMERA ? control.camera_count : level_first(control.chunk_level) + control.chunk_first;
     uint i = gl_GlobalInvocationID.x;
-    if (i >= control.chunk_count) return;
-    PathState path = load_path_state(level_first(control.chunk_level) + control.chunk_first + i);
+    if (i >= (EXTEND_CAMERA ? round_.chunk_count - stored : stored)) return;
+    PathState path;
+    if (EXTEND_CAMERA) {
+        path = begin_path(first + i);
+        i += stored;
+    } else {
+        path = load_path_state(first + i);
+    }
     Hit hit = trace_closest(path.ray);
     hits[i] = hit;
     chunk[i] = path;

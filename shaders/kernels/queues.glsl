@@ -5,15 +5,35 @@
 #include "transport/film.glsl"
 #include "transport/generate.glsl"
 
+// What no kernel of a round but schedule writes of the control record.
+struct Round {
+    uint chunk_count;
+    uint level0_capacity;
+    uint level_capacity;
+    uint shadow_capacity;
+    uint shadow_first;
+};
+Round round_;
+
+// `begin`, for kernels of a round.
+void begin_round() {
+    begin();
+    round_.chunk_count = control.chunk_count;
+    round_.level0_capacity = control.level0_capacity;
+    round_.level_capacity = control.level_capacity;
+    round_.shadow_capacity = control.shadow_capacity;
+    round_.shadow_first = control.shadow_first;
+}
+
 // First entry of a level in the level buffer.
 uint level_first(uint level) {
-    return level == 0u ? 0u : control.level0_capacity + (level - 1u) * control.level_capacity;
+    return level == 0u ? 0u : round_.level0_capacity + (level - 1u) * round_.level_capacity;
 }
 
 // Appends a ray to the level of its depth, or to the only one. A full queue is counted, and ends the render with an error.
 void push_path(PathState path) {
     uint level = min(path.depth, header.level_count - 1u);
-    uint capacity = level == 0u ? control.level0_capacity : control.level_capacity;
+    uint capacity = level == 0u ? round_.level0_capacity : round_.level_capacity;
     uint at = atomicAdd(control.level_count[level], 1u);
     if (at >= capacity) {
         atomicAdd(control.overflows, 1u);
@@ -25,18 +45,18 @@ void push_path(PathState path) {
 // Appends path `i` of the chunk to a group. A group begins after as many entries as the chunk has for each before it.
 void push_shade(uint group, uint i) {
     uint at = atomicAdd(control.shade_count[group], 1u);
-    order[group * control.chunk_count + at] = i;
+    order[group * round_.chunk_count + at] = i;
     if (at % GROUP_SIZE == 0u) atomicAdd(control.shade[group].x, 1u);
 }
 
 // Appends a shadow ray. Where the shadow kernel does so while others are read, to the half of the queue that is not.
 void push_shadow(ShadowRay shadow) {
     uint at = atomicAdd(control.shadow_count, 1u);
-    if (at >= control.shadow_capacity) {
+    if (at >= round_.shadow_capacity) {
         atomicAdd(control.overflows, 1u);
         return;
     }
-    uint first = SCENE_SHADOWS == SHADOWS_FILTERED ? control.shadow_capacity - control.shadow_first : 0u;
+    uint first = SCENE_SHADOWS == SHADOWS_FILTERED ? round_.shadow_capacity - round_.shadow_first : 0u;
     shadows[first + at] = shadow;
 }
 

@@ -7,6 +7,7 @@
 #include "transport/generate.glsl"
 
 void main() {
+    begin();
     uint pixel = gl_GlobalInvocationID.x;
     if (pixel >= batch.pixel_count) return;
     uint index = batch.first_pixel + pixel;

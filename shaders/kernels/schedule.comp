@@ -11,6 +11,7 @@ uint groups(uint count) {
 }
 
 void main() {
+    begin();
     if (gl_GlobalInvocationID.x != 0u) return;
     control.shadow_pending = min(control.shadow_count, control.shadow_capacity);
     control.shadow_count = 0u;
@@ -24,6 +25,7 @@ void main() {
     uint room = most; // rays of the last level have no branches
     for (uint level = header.level_count; level-- > 0u;) {
         uint waiting = control.level_count[level];
+        if (level == 0u) waiting += control.camera_count;
         uint count = min(min(waiting, most), room);
         if (count > control.chunk_count) {
             control.chunk_level = level;
@@ -31,9 +33,14 @@ void main() {
         }
         room = (control.level_capacity - waiting) >> 1u;
     }
-    control.chunk_first = control.level_count[control.chunk_level] - control.chunk_count;
+    uint stored = control.level_count[control.chunk_level];
+    control.chunk_stored = min(stored, control.chunk_count);
+    control.chunk_first = stored - control.chunk_stored;
     control.level_count[control.chunk_level] = control.chunk_first;
-    control.extend = DispatchArguments(groups(control.chunk_count), 1u, 1u);
+    uint cameras = control.chunk_count - control.chunk_stored;
+    control.camera_count -= cameras;
+    control.extend = DispatchArguments(groups(control.chunk_stored), 1u, 1u);
+    control.camera = DispatchArguments(groups(cameras), 1u, 1u);
     // Without groups all paths are in the first; else extend fills them.
     for (uint group = 0u; group < MAX_SHADE_GROUPS; group++) {
         uint count = SHADE_GROUPED || group > 0u ? 0u : control.chunk_count;
@@ -41,8 +48,11 @@ void main() {
         control.shade[group] = DispatchArguments(groups(count), 1u, 1u);
     }
     control.shadow = DispatchArguments(groups(control.shadow_pending), 1u, 1u);
-    control.done = (control.chunk_count | control.shadow_pending) == 0u ? 1u : 0u;
-    control.rounds += control.done == 0u ? 1u : 0u;
+    // Without a chunk only the shadow rays of this round are left, and filtered ones may go on.
+    bool more = control.chunk_count != 0u || (SCENE_SHADOWS == SHADOWS_FILTERED && control.shadow_pending != 0u);
+    uint done = more ? 0u : 1u;
+    control.rounds += (control.done & done) == 0u ? 1u : 0u;
+    control.done = done;
     uint closest = control.closest_rays.x + control.chunk_count;
     control.closest_rays.y += closest < control.chunk_count ? 1u : 0u;
     control.closest_rays.x = closest;

@@ -7,9 +7,10 @@
 #include "transport/shade.glsl"
 
 void main() {
+    begin_round();
     uint at = gl_GlobalInvocationID.x;
     if (at >= control.shade_count[SHADE_GROUP]) return;
     uint i = at;
-    if (SHADE_GROUPED) i = order[SHADE_GROUP * control.chunk_count + at];
+    if (SHADE_GROUPED) i = order[SHADE_GROUP * round_.chunk_count + at];
     shade(load_path_state(i), load_hit(i));
 }

@@ -9,10 +9,11 @@
 #include "transport/shadow.glsl"
 
 void main() {
+    begin_round();
     uint i = gl_GlobalInvocationID.x;
     if (i >= control.shadow_pending) return;
     if (SCENE_SHADOWS == SHADOWS_FILTERED) {
-        ShadowRay shadow = load_shadow_ray(control.shadow_first + i);
+        ShadowRay shadow = load_shadow_ray(round_.shadow_first + i);
         shade_shadow(shadow, trace_occluder(shadow.ray));
         return;
     }

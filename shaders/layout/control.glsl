@@ -15,21 +15,23 @@ struct DispatchArguments {
     uint z;
 };
 
-// One per device. 752 bytes.
-// A round is: schedule; extend (this round's chunk) and shadow (last round's queue); shade.
+// One per device. 772 bytes.
+// A round is: schedule; extend (this round's chunk: what waited, then camera rays) and shadow (last round's queue); shade.
 struct Control {
     // Indirect arguments written by schedule.
     DispatchArguments extend;
+    DispatchArguments camera;
     DispatchArguments shadow;
     // By extend: of each group.
     DispatchArguments shade[MAX_SHADE_GROUPS];
     // Paths of the chunk in each group.
     uint shade_count[MAX_SHADE_GROUPS];
-    // 1 once no level and no shadow ray is pending.
+    // 1 once nothing is pending but the shadow rays of this round.
     uint done;
-    // Level the chunk was taken from, its first entry and its size.
+    // Level the chunk was taken from, its first entry and how many entries; its size with the camera rays that follow.
     uint chunk_level;
     uint chunk_first;
+    uint chunk_stored;
     uint chunk_count;
     // Shadow rays the shadow kernel traces in this round.
     uint shadow_pending;
@@ -52,7 +54,10 @@ struct Control {
     // Rays traced, low and high words.
     uvec2 closest_rays;
     uvec2 shadow_rays;
+    // Rounds of all batches, each up to the one that was done.
     uint rounds;
+    // Samples of the batch without a camera ray yet, those of the lowest slots: they wait below level 0.
+    uint camera_count;
     // Entries waiting on each level.
     uint level_count[MAX_LEVELS];
 };

@@ -100,6 +100,91 @@ struct SceneHeader {
     // 1 if the camera looks through what glows (path).
     uint hide_emitters;
 };
+const uint SCENE_HEADER_WORDS = 18u;
+
+#ifdef GONIO_FETCH
+SceneHeader load_scene_header(uint index) {
+    uint at = index * SCENE_HEADER_WORDS;
+    SceneHeader r;
+    uvec4 w0 = fetch_header(at);
+    r.camera.eye = uintBitsToFloat(w0.xyz);
+    r.camera.kind = w0.w;
+    uvec4 w1 = fetch_header(at + 1u);
+    r.camera.right = uintBitsToFloat(w1.xyz);
+    r.camera.scale_x = uintBitsToFloat(w1.w);
+    uvec4 w2 = fetch_header(at + 2u);
+    r.camera.up = uintBitsToFloat(w2.xyz);
+    r.camera.scale_y = uintBitsToFloat(w2.w);
+    uvec4 w3 = fetch_header(at + 3u);
+    r.camera.forward = uintBitsToFloat(w3.xyz);
+    r.camera.pixel_size = uintBitsToFloat(w3.w);
+    uvec4 w4 = fetch_header(at + 4u);
+    r.camera.lens_radius = uintBitsToFloat(w4.x);
+    r.camera.focus_distance = uintBitsToFloat(w4.y);
+    r.camera.shift_x = uintBitsToFloat(w4.z);
+    r.camera.shift_y = uintBitsToFloat(w4.w);
+    uvec4 w5 = fetch_header(at + 5u);
+    r.ambient = uintBitsToFloat(w5.xyz);
+    r.integrator = w5.w;
+    uvec4 w6 = fetch_header(at + 6u);
+    r.background_bottom = uintBitsToFloat(w6.xyz);
+    r.max_depth = w6.w;
+    uvec4 w7 = fetch_header(at + 7u);
+    r.background_top = uintBitsToFloat(w7.xyz);
+    r.min_weight = uintBitsToFloat(w7.w);
+    uvec4 w8 = fetch_header(at + 8u);
+    r.seed = w8.x;
+    r.sampling = w8.y;
+    r.strata = w8.z;
+    r.shadows = w8.w;
+    uvec4 w9 = fetch_header(at + 9u);
+    r.filter_kind = w9.x;
+    r.filter_radius = uintBitsToFloat(w9.y);
+    r.filter_norm = uintBitsToFloat(w9.z);
+    r.filter_table = w9.w;
+    uvec4 w10 = fetch_header(at + 10u);
+    r.top_root = w10.x;
+    r.instance_count = w10.y;
+    r.light_count = w10.z;
+    r.material_count = w10.w;
+    uvec4 w11 = fetch_header(at + 11u);
+    r.first_instance = w11.x;
+    r.first_top_instance = w11.y;
+    r.first_face = w11.z;
+    r.first_vertex = w11.w;
+    uvec4 w12 = fetch_header(at + 12u);
+    r.first_material = w12.x;
+    r.first_light = w12.y;
+    r.first_texture = w12.z;
+    r.first_texel = w12.w;
+    uvec4 w13 = fetch_header(at + 13u);
+    r.first_table = w13.x;
+    r.film_scale = uintBitsToFloat(w13.y);
+    r.hide_background = w13.z;
+    r.aovs = w13.w;
+    uvec4 w14 = fetch_header(at + 14u);
+    r.top_margin = uintBitsToFloat(w14.x);
+    r.emitter_count = w14.y;
+    r.first_emitter = w14.z;
+    r.environment_maps = w14.w;
+    uvec4 w15 = fetch_header(at + 15u);
+    r.first_environment_map = w15.x;
+    r.emitter_table = w15.y;
+    r.environment_density = uintBitsToFloat(w15.z);
+    r.rr_depth = w15.w;
+    uvec4 w16 = fetch_header(at + 16u);
+    r.clamp = uintBitsToFloat(w16.x);
+    r.level_count = w16.y;
+    r.glows = w16.z;
+    r.shadow_rays = w16.w;
+    uvec4 w17 = fetch_header(at + 17u);
+    r.media_table = w17.x;
+    r.nested = w17.y;
+    r.shadowless = w17.z;
+    r.hide_emitters = w17.w;
+    return r;
+}
+#endif
 
 // Intervals in the tabulated filter's inverse CDF.
 const uint FILTER_KNOTS = 256u;
@@ -122,5 +207,29 @@ struct Batch {
     uint pad1;
     uint pad2;
 };
+const uint BATCH_WORDS = 3u;
+
+#ifdef GONIO_FETCH
+Batch load_batch(uint index) {
+    uint at = index * BATCH_WORDS;
+    Batch r;
+    uvec4 w0 = fetch_batch(at);
+    r.crop_x = w0.x;
+    r.crop_y = w0.y;
+    r.crop_width = w0.z;
+    r.crop_height = w0.w;
+    uvec4 w1 = fetch_batch(at + 1u);
+    r.first_pixel = w1.x;
+    r.pixel_count = w1.y;
+    r.first_sample = w1.z;
+    r.sample_count = w1.w;
+    uvec4 w2 = fetch_batch(at + 2u);
+    r.slot_count = w2.x;
+    r.pad0 = w2.y;
+    r.pad1 = w2.z;
+    r.pad2 = w2.w;
+    return r;
+}
+#endif
 
 #endif

@@ -191,8 +191,8 @@ impl VulkanTracer {
         };
         let bound = Bound::new(if any { &self.any } else { &self.closest }, find)?;
         self.context.submit("clearing the hits", |r| {
-            r.clear(&rays);
-            r.clear(&hits);
+            r.clear(&rays, rays.size());
+            r.clear(&hits, hits.size());
         })?;
         Ok(Work { bound, rays, hits, count: count as u32, chunk: FIRST_DISPATCH })
     }

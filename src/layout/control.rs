@@ -17,23 +17,25 @@ pub struct DispatchArguments {
     pub z: u32,
 }
 
-/// One per device. 752 bytes.
-/// A round is: schedule; extend (this round's chunk) and shadow (last round's queue); shade.
+/// One per device. 772 bytes.
+/// A round is: schedule; extend (this round's chunk: what waited, then camera rays) and shadow (last round's queue); shade.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct Control {
     /// Indirect arguments written by schedule.
     pub extend: DispatchArguments,
+    pub camera: DispatchArguments,
     pub shadow: DispatchArguments,
     /// By extend: of each group.
     pub shade: [DispatchArguments; MAX_SHADE_GROUPS as usize],
     /// Paths of the chunk in each group.
     pub shade_count: [u32; MAX_SHADE_GROUPS as usize],
-    /// 1 once no level and no shadow ray is pending.
+    /// 1 once nothing is pending but the shadow rays of this round.
     pub done: u32,
-    /// Level the chunk was taken from, its first entry and its size.
+    /// Level the chunk was taken from, its first entry and how many entries; its size with the camera rays that follow.
     pub chunk_level: u32,
     pub chunk_first: u32,
+    pub chunk_stored: u32,
     pub chunk_count: u32,
     /// Shadow rays the shadow kernel traces in this round.
     pub shadow_pending: u32,
@@ -56,7 +58,10 @@ pub struct Control {
     /// Rays traced, low and high words.
     pub closest_rays: [u32; 2],
     pub shadow_rays: [u32; 2],
+    /// Rounds of all batches, each up to the one that was done.
     pub rounds: u32,
+    /// Samples of the batch without a camera ray yet, those of the lowest slots: they wait below level 0.
+    pub camera_count: u32,
     /// Entries waiting on each level.
     pub level_count: [u32; MAX_LEVELS as usize],
 }

@@ -132,9 +132,9 @@ records! {
     Ray { origin, t_max, direction, skip_instance, skip_primitive, skip_inward, cone_width, cone_spread }
     DispatchArguments { x, y, z }
     Control {
-        extend, shadow, shade, shade_count, done, chunk_level, chunk_first, chunk_count, shadow_pending, shadow_count, shadow_first,
+        extend, camera, shadow, shade, shade_count, done, chunk_level, chunk_first, chunk_stored, chunk_count, shadow_pending, shadow_count, shadow_first,
         chunk_limit, level0_capacity, level_capacity, shadow_capacity, overflows, nan_count, clamped_count,
-        limited_count, closest_rays, shadow_rays, rounds, level_count,
+        limited_count, closest_rays, shadow_rays, rounds, camera_count, level_count,
     }
     Emitter { corner, kind, edge1, instance, edge2, primitive, normal, density, radiance, flags }
     EnvironmentMap { to_local, scale, texture, width, height, first_table, _pad0 }

@@ -22,6 +22,8 @@ layout(set = 0, binding = 0, scalar) readonly buffer Heap { uvec4 heap[]; };
 
 // What kernels/bindings.glsl declares, over one heap: `load_*` reads it word by word.
 #define GONIO_FETCH
+uvec4 fetch_header(uint at) { return heap[FIRST_WORD + at]; }
+uvec4 fetch_batch(uint at) { return heap[FIRST_WORD + at]; }
 #include "layout/header.glsl"
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };
 uvec4 fetch_data(uint at) { return heap[at]; }
@@ -39,8 +41,6 @@ uvec4 fetch_shadow(uint at) { return heap[FIRST_WORD + at]; }
         Record name##_in[];                                                    \
     }
 IN(Camera, camera);
-IN(SceneHeader, scene_header);
-IN(Batch, batch);
 IN(FilmSum, film_sum);
 IN(AovPixel, aov_pixel);
 IN(Ray, ray);
@@ -210,6 +210,8 @@ void store_constants() {
     constants[133] = PARAMETER_CLEARCOAT_GLOSS;
     constants[134] = MAX_SHADE_GROUPS;
     constants[135] = SHADE_GROUP_MISSED;
+    constants[136] = SCENE_HEADER_WORDS;
+    constants[137] = BATCH_WORDS;
 }
 
 void main() {
@@ -232,8 +234,8 @@ void main() {
     case 9u: path_state_out[i] = load_path_state(i); break;
     case 10u: shadow_ray_out[i] = load_shadow_ray(i); break;
     case 11u: camera_out[i] = camera_in[i]; break;
-    case 12u: scene_header_out[i] = scene_header_in[i]; break;
-    case 13u: batch_out[i] = batch_in[i]; break;
+    case 12u: scene_header_out[i] = load_scene_header(i); break;
+    case 13u: batch_out[i] = load_batch(i); break;
     case 14u: film_sum_out[i] = film_sum_in[i]; break;
     case 15u: aov_pixel_out[i] = aov_pixel_in[i]; break;
     case 16u: ray_out[i] = ray_in[i]; break;

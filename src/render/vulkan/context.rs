@@ -409,7 +409,7 @@ impl Context {
             let buffer = self.buffer(&format!("buffer {at} of {name}"), size, Place::Device)?;
             match spec {
                 BufferSpec::Input(bytes) | BufferSpec::InOut(bytes) => self.upload(&buffer, 0, bytes)?,
-                BufferSpec::Output(_) => drop(self.submit("clearing", |r| r.clear(&buffer))?),
+                BufferSpec::Output(_) => drop(self.submit("clearing", |r| r.clear(&buffer, buffer.size()))?),
             }
             bound_buffers.push((buffer, size));
         }

@@ -22,11 +22,11 @@ pub fn run(context: &mut Context, queues: &Queues, x: u32, y: u32, sample: u32) 
     };
     let control = queues.fresh_control();
     context.submit("inspecting a sample", |r| {
-        r.clear(&queues.aovs);
+        r.clear(&queues.aovs, queues.aovs.size());
         r.update(&queues.control, 0, bytemuck::bytes_of(&control));
         r.barrier();
         queues.record_chunk_limit(r, queues.plan.chunk);
-        queues.record_generate(r, &batch);
+        queues.record_start(r, &batch);
     })?;
     let mut bounces = Vec::new();
     loop {

@@ -28,7 +28,7 @@ pub struct StageTimes {
 /// What a submission did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Work {
-    /// Rounds that had work, and the rays in their chunks.
+    /// Rounds up to the one that was done, and the rays in their chunks.
     pub rounds: u32,
     pub rays: u64,
     /// Seconds on the host's clock.
@@ -43,7 +43,7 @@ pub struct Pace {
     chunk_limit: u32,
     chunk_most: u32,
     round_seconds: f64,
-    /// Rounds the last batch needed, with the one that finds nothing to do.
+    /// Rounds the last batch needed.
     rounds_expected: u32,
     /// Seconds in the slowest stage and rays, old ones fading.
     seconds: f64,
@@ -75,9 +75,9 @@ impl Pace {
         wanted.min(affordable).clamp(1, MAX_ROUNDS)
     }
 
-    /// A batch ended after `rounds` rounds that had work.
+    /// A batch ended after `rounds` rounds.
     pub fn batch_ended(&mut self, rounds: u32) {
-        self.rounds_expected = rounds + 1;
+        self.rounds_expected = rounds;
     }
 
     /// Learns from a submission. Averages, not the longest dispatch: on a busy machine that measures the others.
@@ -157,7 +157,7 @@ mod tests {
     fn rounds_follow_the_last_batch_then_double_within_the_time_of_a_submission() {
         let mut pace = Pace::new(1000);
         pace.batch_ended(9);
-        assert_eq!([pace.rounds(0), pace.rounds(8), pace.rounds(10), pace.rounds(20)], [10, 2, 10, 20]);
+        assert_eq!([pace.rounds(0), pace.rounds(8), pace.rounds(10), pace.rounds(20)], [9, 1, 10, 20]);
         pace.learn(&work(1, 1000, 0.125 / 1.5));
         assert_eq!(pace.rounds(0), 2);
     }

@@ -23,9 +23,9 @@ const SIDE_BY_SIDE: u32 = 16;
 /// Entries of the queues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct QueuePlan {
-    /// Sample slots of a batch, and entries of level 0.
+    /// Sample slots of a batch.
     pub batch: u32,
-    /// Rays of a chunk at most.
+    /// Rays of a chunk at most, and entries of level 0.
     pub chunk: u32,
     /// Levels, one per scattering depth.
     pub levels: u32,
@@ -79,7 +79,7 @@ impl QueuePlan {
 
     /// Names and bytes of the queues: levels, chunk, hits, what is shaded together, shadow rays, slots.
     pub fn sizes(&self) -> [(&'static str, u64); 6] {
-        let level_entries = u64::from(self.batch) + u64::from(self.levels - 1) * u64::from(self.level_capacity());
+        let level_entries = u64::from(self.chunk) + u64::from(self.levels - 1) * u64::from(self.level_capacity());
         [
             ("ray queue", level_entries * size_of::<PathState>() as u64),
             ("ray chunk", u64::from(self.chunk) * size_of::<PathState>() as u64),

@@ -9,8 +9,8 @@ use super::record::Recorder;
 use super::scene::SceneBuffers;
 use crate::bake::SceneData;
 use crate::layout::{
-    Batch, Control, DispatchArguments, EMITTER_TEXTURED, INSTANCE_FLAT, INSTANCE_GOURAUD, INVALID, KIND_SPHERE, Light,
-    MAX_SHADE_GROUPS, MODEL_BLEND, T_INFINITE,
+    Batch, Control, DispatchArguments, EMITTER_TEXTURED, FilmSum, INSTANCE_FLAT, INSTANCE_GOURAUD, INVALID,
+    KIND_SPHERE, Light, MAX_SHADE_GROUPS, MODEL_BLEND, T_INFINITE,
 };
 use crate::shaders::{self, Fetch};
 use glam::Vec3;
@@ -19,8 +19,9 @@ use std::mem::offset_of;
 
 /// The wavefront's kernels in the order in which they run.
 struct Stages<T> {
-    generate: T,
     schedule: T,
+    /// Of the chunk's camera rays, and of the rest.
+    camera: T,
     extend: T,
     shadow: T,
     /// One for each group of paths.
@@ -41,6 +42,8 @@ const MODELS_PRESENT: u32 = 6;
 const SHADE_GROUP: u32 = 29;
 const SHADE_MODEL: u32 = 30;
 const SHADE_GROUPED: u32 = 31;
+/// Whether an extend kernel makes camera rays.
+const EXTEND_CAMERA: u32 = 32;
 
 /// Bit n: a material has model n.
 fn models(data: &SceneData) -> u32 {
@@ -125,9 +128,9 @@ impl Kernels {
         let numbered: Vec<(u32, u32)> = (0..).zip(groups).collect();
         Ok(Kernels {
             stages: Stages {
-                generate: make("generate", &[])?,
                 schedule: make("schedule", &[grouping])?,
-                extend: make("extend", &[grouping])?,
+                camera: make("extend", &[grouping, (EXTEND_CAMERA, 1)])?,
+                extend: make("extend", &[grouping, (EXTEND_CAMERA, 0)])?,
                 shadow: make("shadow", &[])?,
                 shade: numbered.into_par_iter().map(shade).collect::<Result<_, _>>()?,
                 resolve: make("resolve", &[])?,
@@ -143,6 +146,7 @@ pub struct Queues {
     pub control: Buffer,
     pub chunk: Buffer,
     pub hits: Buffer,
+    slots: Buffer,
     pub film: Buffer,
     pub aovs: Buffer,
     /// `Control` for the host, after each submission.
@@ -180,22 +184,22 @@ impl Queues {
             _ => Vec::new(),
         };
         let bind = |kernel: &Kernel| Bound::new(kernel, find);
-        let Stages { generate, schedule, extend, shadow, shade, resolve } = &kernels.stages;
+        let Stages { schedule, camera, extend, shadow, shade, resolve } = &kernels.stages;
         let stages = Stages {
-            generate: bind(generate)?,
             schedule: bind(schedule)?,
+            camera: bind(camera)?,
             extend: bind(extend)?,
             shadow: bind(shadow)?,
             shade: shade.iter().map(bind).collect::<Result<_, _>>()?,
             resolve: bind(resolve)?,
         };
-        Ok(Queues { plan, control, chunk, hits, film, aovs, control_copy, stages })
+        Ok(Queues { plan, control, chunk, hits, slots, film, aovs, control_copy, stages })
     }
 
     /// The control record at the start of a job.
     pub fn fresh_control(&self) -> Control {
         Control {
-            level0_capacity: self.plan.batch,
+            level0_capacity: self.plan.chunk,
             level_capacity: self.plan.level_capacity(),
             shadow_capacity: self.plan.shadows,
             ..bytemuck::Zeroable::zeroed()
@@ -206,17 +210,17 @@ impl Queues {
     pub fn record_warm_up<'r>(&'r self, r: &Recorder<'r>) {
         let nothing = Batch { crop_width: 1, pixel_count: 1, sample_count: 1, ..Batch::default() };
         r.update(&self.control, 0, bytemuck::bytes_of(&self.fresh_control()));
-        let Stages { generate, schedule, extend, shadow, shade, resolve } = &self.stages;
-        for bound in [generate, schedule, extend, shadow, resolve].into_iter().chain(shade) {
+        let Stages { schedule, camera, extend, shadow, shade, resolve } = &self.stages;
+        for bound in [schedule, camera, extend, shadow, resolve].into_iter().chain(shade) {
             r.barrier();
             r.dispatch(bound, bytemuck::bytes_of(&nothing), 1);
         }
     }
 
-    /// Records: the batch's camera rays.
-    pub fn record_generate<'r>(&'r self, r: &Recorder<'r>, batch: &Batch) {
-        r.update(&self.control, offset_of!(Control, level_count) as u64, bytemuck::bytes_of(&batch.slot_count));
-        r.dispatch(&self.stages.generate, bytemuck::bytes_of(batch), batch.slot_count.div_ceil(WORKGROUP));
+    /// Records: the batch's samples have no light yet and are waiting for their camera rays.
+    pub fn record_start<'r>(&'r self, r: &Recorder<'r>, batch: &Batch) {
+        r.clear(&self.slots, u64::from(batch.slot_count) * size_of::<FilmSum>() as u64);
+        r.update(&self.control, offset_of!(Control, camera_count) as u64, bytemuck::bytes_of(&batch.slot_count));
         r.barrier();
     }
 
@@ -233,6 +237,7 @@ impl Queues {
         r.dispatch(&self.stages.schedule, push, 1);
         r.timestamp();
         r.barrier();
+        r.dispatch_indirect(&self.stages.camera, push, &self.control, offset_of!(Control, camera) as u64);
         r.dispatch_indirect(&self.stages.extend, push, &self.control, offset_of!(Control, extend) as u64);
         r.timestamp();
         r.dispatch_indirect(&self.stages.shadow, push, &self.control, offset_of!(Control, shadow) as u64);

@@ -97,10 +97,13 @@ impl<'r> Recorder<'r> {
         }
     }
 
-    /// Sets the whole buffer to zero.
-    pub fn clear(&self, buffer: &'r Buffer) {
-        // SAFETY: a device buffer is a transfer target, and sizes are whole words.
-        unsafe { self.device.raw().cmd_fill_buffer(self.commands, buffer.raw(), 0, vk::WHOLE_SIZE, 0) };
+    /// Sets the first `bytes` bytes (whole words) to zero.
+    pub fn clear(&self, buffer: &'r Buffer, bytes: u64) {
+        assert!(bytes.is_multiple_of(4) && bytes <= buffer.size(), "clearing {bytes} of {} bytes", buffer.size());
+        if bytes > 0 {
+            // SAFETY: inside the buffer, which is a transfer target.
+            unsafe { self.device.raw().cmd_fill_buffer(self.commands, buffer.raw(), 0, bytes, 0) };
+        }
     }
 
     /// Writes a few bytes (whole words, at most 65,536) that travel inside the command buffer.

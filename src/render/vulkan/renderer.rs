@@ -162,8 +162,8 @@ impl VulkanRenderer {
     fn run_band(&mut self, band: Rect, job: &Job, tally: &mut Tally, watch: &Watch) -> Result<(), RenderError> {
         let queues = self.queues.as_ref().expect("made ready by the caller");
         self.context.submit("clearing the film", |r| {
-            r.clear(&queues.film);
-            r.clear(&queues.aovs);
+            r.clear(&queues.film, queues.film.size());
+            r.clear(&queues.aovs, queues.aovs.size());
         })?;
         let mut finished: Option<Batch> = None;
         for batch in plan::batches(band, job.samples.clone(), queues.plan.batch) {
@@ -219,7 +219,7 @@ fn run_batch(
                 if let Some(finished) = finished {
                     queues.record_resolve(r, &finished);
                 }
-                queues.record_generate(r, &batch);
+                queues.record_start(r, &batch);
             }
             r.timestamp();
             for _ in 0..rounds {
