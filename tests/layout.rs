@@ -255,7 +255,7 @@ fn load_functions_take_every_member_from_its_own_bytes() {
 
 /// What kernels bind, as `shaders/kernels/bindings.glsl` promises: (set, binding, storage name, texel name).
 /// A texel name is given where the texel variant reads through a texel buffer.
-const BINDINGS: [(u32, u32, &str, Option<&str>); 17] = [
+const BINDINGS: [(u32, u32, &str, Option<&str>); 19] = [
     (0, 0, "HeaderBlock", None),
     (0, 1, "NodePage", Some("node_pages")),
     (0, 2, "TrianglePage", Some("triangle_pages")),
@@ -273,6 +273,8 @@ const BINDINGS: [(u32, u32, &str, Option<&str>); 17] = [
     (1, 10, "HitWords", Some("hit_words")),
     (1, 11, "ShadowWords", Some("shadow_words")),
     (1, 12, "OrderBlock", None),
+    (1, 13, "SlotWords", Some("slot_words")),
+    (1, 14, "FilmWords", Some("film_words")),
 ];
 
 /// Scene arrays come in pages: arrays of this many descriptors.

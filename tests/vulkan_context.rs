@@ -25,8 +25,8 @@ fn bytes_survive_the_way_to_the_device_and_back() {
     let bytes = pattern((17 << 20) + 52); // more than travels at a time
     let buffer = context.buffer("round trip", bytes.len() as u64 + 16, Place::Device).unwrap();
     context.upload(&buffer, 16, &bytes).unwrap();
-    assert!(context.download(&buffer, 16, bytes.len() as u64).unwrap() == bytes);
-    let part = context.download(&buffer, 116, 40).unwrap();
+    assert!(context.download::<u8>(&buffer, 16, bytes.len()).unwrap() == bytes);
+    let part: Vec<u8> = context.download(&buffer, 116, 40).unwrap();
     assert_eq!(part, bytes[100..140]);
 }
 
@@ -138,7 +138,7 @@ fn a_scene_is_cut_into_pages_whose_bytes_in_a_row_are_its_arrays() {
         assert_eq!(buffers.constants(), [(1, 8), (2, 1), (3, 4), (4, 6)]);
         let mut read = |set: usize| -> Vec<u8> {
             let pages = buffers.pages(set).to_vec();
-            pages.iter().flat_map(|page| context.download(page, 0, page.size()).unwrap()).collect()
+            pages.iter().flat_map(|page| context.download::<u8>(page, 0, page.size() as usize).unwrap()).collect()
         };
         assert!(read(0) == bytemuck::cast_slice::<Node, u8>(&data.nodes), "nodes");
         assert!(read(1) == bytemuck::cast_slice::<Triangle, u8>(&data.triangles), "triangles");

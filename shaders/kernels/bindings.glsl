@@ -114,25 +114,33 @@ GONIO_FETCH_PAGED(fetch_node, node_pages, NODE_PAGES)
 GONIO_FETCH_PAGED(fetch_triangle, triangle_pages, TRIANGLE_PAGES)
 GONIO_FETCH_PAGED(fetch_data, data_pages, DATA_PAGES)
 
-// Set 1: the work. Bindings 8-11 are read-only views of the buffers bound at 1-4.
+// Set 1: the work. Bindings 8-11 are read-only views of the buffers bound at 1-4, 13 and 14 of those at 5 and 6.
 #ifdef FETCH_TEXEL
 layout(set = 1, binding = 8) uniform usamplerBuffer level_words;
 layout(set = 1, binding = 9) uniform usamplerBuffer chunk_words;
 layout(set = 1, binding = 10) uniform usamplerBuffer hit_words;
 layout(set = 1, binding = 11) uniform usamplerBuffer shadow_words;
+layout(set = 1, binding = 13) uniform usamplerBuffer slot_words;
+layout(set = 1, binding = 14) uniform usamplerBuffer film_words;
 uvec4 fetch_level(uint at) { return texelFetch(level_words, int(at)); }
 uvec4 fetch_chunk(uint at) { return texelFetch(chunk_words, int(at)); }
 uvec4 fetch_hit(uint at) { return texelFetch(hit_words, int(at)); }
 uvec4 fetch_shadow(uint at) { return texelFetch(shadow_words, int(at)); }
+uvec4 fetch_slot(uint at) { return texelFetch(slot_words, int(at)); }
+uvec4 fetch_film(uint at) { return texelFetch(film_words, int(at)); }
 #else
 layout(set = 1, binding = 8, scalar) readonly buffer LevelWords { uvec4 level_words[]; };
 layout(set = 1, binding = 9, scalar) readonly buffer ChunkWords { uvec4 chunk_words[]; };
 layout(set = 1, binding = 10, scalar) readonly buffer HitWords { uvec4 hit_words[]; };
 layout(set = 1, binding = 11, scalar) readonly buffer ShadowWords { uvec4 shadow_words[]; };
+layout(set = 1, binding = 13, scalar) readonly buffer SlotWords { uvec4 slot_words[]; };
+layout(set = 1, binding = 14, scalar) readonly buffer FilmWords { uvec4 film_words[]; };
 uvec4 fetch_level(uint at) { return level_words[at]; }
 uvec4 fetch_chunk(uint at) { return chunk_words[at]; }
 uvec4 fetch_hit(uint at) { return hit_words[at]; }
 uvec4 fetch_shadow(uint at) { return shadow_words[at]; }
+uvec4 fetch_slot(uint at) { return slot_words[at]; }
+uvec4 fetch_film(uint at) { return film_words[at]; }
 #endif
 
 // Where `load_path_state` reads: the level queues in extend (which copies its chunk), the chunk elsewhere.

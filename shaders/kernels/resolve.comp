@@ -11,10 +11,11 @@ void main() {
     uint pixel = gl_GlobalInvocationID.x;
     if (pixel >= batch.pixel_count) return;
     uint index = batch.first_pixel + pixel;
-    FilmSum sum = film[index];
+    FilmSum sum = FilmSum(fetch_film(2u * index), fetch_film(2u * index + 1u));
     uint clamped_count = 0u;
     for (uint s = 0u; s < batch.sample_count; s++) {
-        FilmSum seen = slots[pixel * batch.sample_count + s];
+        uint at = 2u * (pixel * batch.sample_count + s);
+        FilmSum seen = FilmSum(fetch_slot(at), fetch_slot(at + 1u));
         uint clamped = 0u;
         for (uint lane = 0u; lane < 4u; lane++) {
             Fixed units = clamp_sample(seen.low[lane], seen.high[lane]);

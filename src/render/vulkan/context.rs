@@ -9,6 +9,7 @@ use super::memory::{Buffer, Place};
 use super::record::Recorder;
 use super::validation::Messages;
 use ash::vk;
+use bytemuck::Pod;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
 use std::cell::Cell;
@@ -360,14 +361,15 @@ impl Context {
         Ok(())
     }
 
-    /// Reads from a device buffer.
-    pub fn download(&mut self, from: &Buffer, offset: u64, bytes: u64) -> Result<Vec<u8>, VulkanError> {
+    /// Reads `count` records from byte `offset` of a device buffer on.
+    pub fn download<T: Pod>(&mut self, from: &Buffer, offset: u64, count: usize) -> Result<Vec<T>, VulkanError> {
         let staging = self.staging(Place::Readback)?;
-        let mut data = vec![0; bytes as usize];
+        let mut data = bytemuck::zeroed_vec::<T>(count);
         let empty = |full: Option<(&mut [u8], &Buffer)>| full.into_iter().for_each(|(part, buffer)| buffer.read(part));
         let mut full = None;
         let mut at = offset;
-        for (part, buffer) in data.chunks_mut(STAGING as usize).zip(staging.iter().cycle()) {
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut data);
+        for (part, buffer) in bytes.chunks_mut(STAGING as usize).zip(staging.iter().cycle()) {
             let (size, last) = (part.len() as u64, full.take());
             let what = format!("reading {}", from.name());
             self.submit_while(&what, |r| r.copy(from, at, buffer, 0, size), || empty(last))?;
@@ -421,7 +423,7 @@ impl Context {
         let mut outputs = Vec::new();
         for ((buffer, size), spec) in bound_buffers.iter().zip(buffers) {
             if !matches!(spec, BufferSpec::Input(_)) {
-                outputs.push(self.download(buffer, 0, *size)?);
+                outputs.push(self.download(buffer, 0, *size as usize)?);
             }
         }
         Ok(outputs)

@@ -41,12 +41,10 @@ pub fn run(context: &mut Context, queues: &Queues, x: u32, y: u32, sample: u32) 
                 control.overflows
             )));
         }
-        let count = u64::from(control.chunk_count);
+        let count = control.chunk_count as usize;
         if count > 0 {
-            let paths = context.download(&queues.chunk, 0, count * size_of::<PathState>() as u64)?;
-            let hits = context.download(&queues.hits, 0, count * size_of::<Hit>() as u64)?;
-            let paths: Vec<PathState> = bytemuck::pod_collect_to_vec(&paths);
-            let hits: Vec<Hit> = bytemuck::pod_collect_to_vec(&hits);
+            let paths: Vec<PathState> = context.download(&queues.chunk, 0, count)?;
+            let hits: Vec<Hit> = context.download(&queues.hits, 0, count)?;
             bounces.extend(paths.into_iter().zip(hits).map(|(path, hit)| Bounce { path, hit }));
         }
         if control.done != 0 {

@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::device::{DeviceChoice, DeviceKind};
 use super::error::VulkanError;
-use super::memory::{Buffer, Place};
+use super::memory::Place;
 use super::pace::{self, Pace, Work};
 use super::plan::{self, QueuePlan};
 use super::queues::{Kernels, Queues, specialisation};
@@ -181,17 +181,12 @@ impl VulkanRenderer {
         Ok(())
     }
 
-    fn download<T: bytemuck::Pod>(&mut self, from: &Buffer, count: usize) -> Result<Vec<T>, VulkanError> {
-        let bytes = self.context.download(from, 0, (count * size_of::<T>()) as u64)?;
-        Ok(bytemuck::pod_collect_to_vec(&bytes))
-    }
-
     /// A band's sums, and its auxiliary values if they are wanted.
     fn read_band(&mut self, band: Rect) -> Result<(Vec<FilmSum>, Vec<AovPixel>), VulkanError> {
         let queues = self.queues.as_ref().expect("made ready by the caller");
         let (sums, aovs) = (queues.film.clone(), queues.aovs.clone());
         let aov_count = if self.header.aovs != 0 { band.area() } else { 0 };
-        Ok((self.download(&sums, band.area())?, self.download(&aovs, aov_count)?))
+        Ok((self.context.download(&sums, 0, band.area())?, self.context.download(&aovs, 0, aov_count)?))
     }
 }
 
