@@ -169,7 +169,9 @@ fn the_layout_kernel_reads_every_record_the_way_kernels_do() {
         let name = record.snake_name();
         let load = format!("{} load_{name}(uint index)", record.name);
         let source = if glsl.contains(&load) { format!("load_{name}(i)") } else { format!("{name}_in[i]") };
-        let case = format!("case {number}u: {name}_out[i] = {source}; break;");
+        let stored = glsl.contains(&format!("void store_{name}(uint index, "));
+        let case = if stored { format!("store_{name}(i, {source})") } else { format!("{name}_out[i] = {source}") };
+        let case = format!("case {number}u: {case}; break;");
         assert!(text.contains(&case), "{KERNEL} lacks `{case}`");
     }
     let count = format!("const uint RECORD_COUNT = {}u;", records.len());

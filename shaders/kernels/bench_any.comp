@@ -11,5 +11,5 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= batch.slot_count) return;
     uint at = batch.first_pixel + i;
-    hits[at].instance = trace_any(load_shadow_ray(at).ray) ? 0u : INVALID;
+    hits[HIT_WORDS * at].w = trace_any(load_shadow_ray(at).ray) ? 0u : INVALID;
 }

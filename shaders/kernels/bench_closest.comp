@@ -11,5 +11,5 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= batch.slot_count) return;
     uint at = batch.first_pixel + i;
-    hits[at] = trace_closest(load_shadow_ray(at).ray);
+    store_hit(at, trace_closest(load_shadow_ray(at).ray));
 }

@@ -143,11 +143,22 @@ uvec4 fetch_slot(uint at) { return slot_words[at]; }
 uvec4 fetch_film(uint at) { return film_words[at]; }
 #endif
 
-// Where `load_path_state` reads: the level queues in extend (which copies its chunk), the chunk elsewhere.
+// Records of the queues are written by the word, too: CPU devices store lane by lane, and a word costs little more than a
+// quarter of it.
+layout(set = 1, binding = 1, scalar) writeonly buffer LevelBlock { uvec4 levels[]; };
+layout(set = 1, binding = 2, scalar) writeonly buffer ChunkBlock { uvec4 chunk[]; };
+layout(set = 1, binding = 3, scalar) writeonly buffer HitBlock { uvec4 hits[]; };
+layout(set = 1, binding = 4, scalar) writeonly buffer ShadowBlock { uvec4 shadows[]; };
+void put_hit(uint at, uvec4 word) { hits[at] = word; }
+void put_shadow(uint at, uvec4 word) { shadows[at] = word; }
+
+// Where paths are read and written: extend copies its chunk from the levels, the others go from the chunk to the levels.
 #ifdef PATHS_FROM_LEVELS
 #define fetch_path fetch_level
+void put_path(uint at, uvec4 word) { chunk[at] = word; }
 #else
 #define fetch_path fetch_chunk
+void put_path(uint at, uvec4 word) { levels[at] = word; }
 #endif
 #include "layout/mod.glsl"
 
@@ -159,10 +170,6 @@ uint load_model(uint material) { return fetch_data(header.first_material + mater
 float load_table(uint index) { return uintBitsToFloat(fetch_data(header.first_table + (index >> 2u))[index & 3u]); }
 
 layout(set = 1, binding = 0, scalar) coherent buffer ControlBlock { Control control; };
-layout(set = 1, binding = 1, scalar) buffer LevelBlock { PathState levels[]; };
-layout(set = 1, binding = 2, scalar) buffer ChunkBlock { PathState chunk[]; };
-layout(set = 1, binding = 3, scalar) buffer HitBlock { Hit hits[]; };
-layout(set = 1, binding = 4, scalar) buffer ShadowBlock { ShadowRay shadows[]; };
 layout(set = 1, binding = 5, scalar) coherent buffer SlotBlock { FilmSum slots[]; };
 layout(set = 1, binding = 6, scalar) coherent buffer FilmBlock { FilmSum film[]; };
 layout(set = 1, binding = 7, scalar) coherent buffer AovBlock { AovPixel aovs[]; };

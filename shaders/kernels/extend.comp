@@ -45,7 +45,7 @@ void main() {
         path = load_path_state(first + i);
     }
     Hit hit = trace_closest(path.ray);
-    hits[i] = hit;
-    chunk[i] = path;
+    store_hit(i, hit);
+    store_path_state(i, path);
     if (SHADE_GROUPED) push_shade(shade_group(hit), i);
 }

@@ -39,7 +39,7 @@ void push_path(PathState path) {
         atomicAdd(control.overflows, 1u);
         return;
     }
-    levels[level_first(level) + at] = path;
+    store_path_state(level_first(level) + at, path);
 }
 
 // Appends path `i` of the chunk to a group. A group begins after as many entries as the chunk has for each before it.
@@ -57,7 +57,7 @@ void push_shadow(ShadowRay shadow) {
         return;
     }
     uint first = SCENE_SHADOWS == SHADOWS_FILTERED ? round_.shadow_capacity - round_.shadow_first : 0u;
-    shadows[first + at] = shadow;
+    store_shadow_ray(first + at, shadow);
 }
 
 // Notes that a contribution which reaches the film was limited.

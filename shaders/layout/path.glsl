@@ -55,6 +55,12 @@ Hit load_hit(uint index) {
     r.pad2 = w1.w;
     return r;
 }
+
+void store_hit(uint index, Hit r) {
+    uint at = index * HIT_WORDS;
+    put_hit(at, uvec4(floatBitsToUint(r.t), floatBitsToUint(r.b1), floatBitsToUint(r.b2), r.instance));
+    put_hit(at + 1u, uvec4(r.primitive, r.pad0, r.pad1, r.pad2));
+}
 #endif
 
 // A pending ray and all that its shading will need to know. 112 bytes.
@@ -118,6 +124,17 @@ PathState load_path_state(uint index) {
     r.interior = w6.w;
     return r;
 }
+
+void store_path_state(uint index, PathState r) {
+    uint at = index * PATH_STATE_WORDS;
+    put_path(at, uvec4(floatBitsToUint(r.ray.origin), floatBitsToUint(r.ray.t_max)));
+    put_path(at + 1u, uvec4(floatBitsToUint(r.ray.direction), r.ray.skip_instance));
+    put_path(at + 2u, uvec4(r.ray.skip_primitive, r.ray.skip_inward, floatBitsToUint(r.ray.cone_width), floatBitsToUint(r.ray.cone_spread)));
+    put_path(at + 3u, floatBitsToUint(r.throughput));
+    put_path(at + 4u, uvec4(r.slot, r.pixel, r.sample_index, r.path_id));
+    put_path(at + 5u, uvec4(r.depth, floatBitsToUint(r.coverage), floatBitsToUint(r.eta), floatBitsToUint(r.pdf)));
+    put_path(at + 6u, uvec4(floatBitsToUint(r.absorption), r.interior));
+}
 #endif
 
 // A shadow ray with the light it carries if nothing is in the way. 80 bytes.
@@ -158,6 +175,15 @@ ShadowRay load_shadow_ray(uint index) {
     r.layer = w4.z;
     r.limited = w4.w;
     return r;
+}
+
+void store_shadow_ray(uint index, ShadowRay r) {
+    uint at = index * SHADOW_RAY_WORDS;
+    put_shadow(at, uvec4(floatBitsToUint(r.ray.origin), floatBitsToUint(r.ray.t_max)));
+    put_shadow(at + 1u, uvec4(floatBitsToUint(r.ray.direction), r.ray.skip_instance));
+    put_shadow(at + 2u, uvec4(r.ray.skip_primitive, r.ray.skip_inward, floatBitsToUint(r.ray.cone_width), floatBitsToUint(r.ray.cone_spread)));
+    put_shadow(at + 3u, floatBitsToUint(r.contribution));
+    put_shadow(at + 4u, uvec4(r.slot, r.dither, r.layer, r.limited));
 }
 #endif
 

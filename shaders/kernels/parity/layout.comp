@@ -32,6 +32,10 @@ uvec4 fetch_triangle(uint at) { return heap[FIRST_WORD + at]; }
 uvec4 fetch_path(uint at) { return heap[FIRST_WORD + at]; }
 uvec4 fetch_hit(uint at) { return heap[FIRST_WORD + at]; }
 uvec4 fetch_shadow(uint at) { return heap[FIRST_WORD + at]; }
+layout(set = 0, binding = 1, scalar) writeonly buffer WordsOut { uvec4 words_out[]; };
+void put_hit(uint at, uvec4 word) { words_out[at] = word; }
+void put_path(uint at, uvec4 word) { words_out[at] = word; }
+void put_shadow(uint at, uvec4 word) { words_out[at] = word; }
 #include "layout/mod.glsl"
 
 // Records without a `load_*` are read as kernels read them: through a block.
@@ -57,6 +61,7 @@ OUT(Vertex, vertex);
 OUT(Material, material);
 OUT(Light, light);
 OUT(Texture, texture);
+// Stored by the word; these are here for their layout.
 OUT(Hit, hit);
 OUT(PathState, path_state);
 OUT(ShadowRay, shadow_ray);
@@ -230,9 +235,9 @@ void main() {
     case 5u: material_out[i] = load_material(i); break;
     case 6u: light_out[i] = load_light(i); break;
     case 7u: texture_out[i] = load_texture(i); break;
-    case 8u: hit_out[i] = load_hit(i); break;
-    case 9u: path_state_out[i] = load_path_state(i); break;
-    case 10u: shadow_ray_out[i] = load_shadow_ray(i); break;
+    case 8u: store_hit(i, load_hit(i)); break;
+    case 9u: store_path_state(i, load_path_state(i)); break;
+    case 10u: store_shadow_ray(i, load_shadow_ray(i)); break;
     case 11u: camera_out[i] = camera_in[i]; break;
     case 12u: scene_header_out[i] = load_scene_header(i); break;
     case 13u: batch_out[i] = load_batch(i); break;
