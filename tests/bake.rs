@@ -380,3 +380,20 @@ fn what_single_precision_cannot_carry_is_refused() {
     scene.film.unit_exponent = 200;
     assert!(matches!(bake(&scene), Err(BakeError::FilmUnit(200))));
 }
+
+#[test]
+fn rays_have_a_level_for_each_depth_only_where_they_branch() {
+    let mut scene = scene_of(vec![globe(4)]);
+    scene.settings.max_depth = 7;
+    let levels = |scene: &Scene| bake(scene).expect("bakes").header.level_count;
+    scene.materials[0].transparency = Some(Transparency::Interpolated { k_t: 0.5 });
+    scene.settings.integrator = Integrator::Path;
+    assert_eq!(levels(&scene), 1, "path");
+    scene.settings.integrator = Integrator::Whitted;
+    assert_eq!(levels(&scene), 8, "a pane");
+    scene.materials[0].transparency = None;
+    scene.materials[0].k_r = 0.5;
+    assert_eq!(levels(&scene), 1, "a mirror");
+    scene.materials[0].model = Model::Dielectric { eta: 1.5, absorption: Vec3::ZERO };
+    assert_eq!(levels(&scene), 8, "glass");
+}

@@ -204,6 +204,12 @@ Spectrum albedo_material(Material material) {
     return spectrum_from_rgb(vec3(clamp_(rgb.x, 0.0, 1.0), clamp_(rgb.y, 0.0, 1.0), clamp_(rgb.z, 0.0, 1.0)));
 }
 
+// True if whitted follows what the material transmits: glass, drawn smooth even if it is rough, and thin panes.
+bool is_refracting(Material material) {
+    return material.model == MODEL_DIELECTRIC || material.model == MODEL_ROUGH_DIELECTRIC ||
+        material.model == MODEL_THIN_DIELECTRIC;
+}
+
 // True if the model has lobes of zero width only: no light needs to be sampled for it.
 bool is_delta(Material material) {
     switch (material.model) {

@@ -43,12 +43,6 @@ vec3 mirror_direction(Surface surface, vec3 wo) {
     return geometric * (2.0 * cos_geometric) - wo;
 }
 
-// True if whitted follows what the material transmits: glass, drawn smooth even if it is rough, and thin panes.
-bool is_refracting(Material material) {
-    return material.model == MODEL_DIELECTRIC || material.model == MODEL_ROUGH_DIELECTRIC ||
-        material.model == MODEL_THIN_DIELECTRIC;
-}
-
 // Follows the mirror branch of any material and both branches of a dielectric, each with its Fresnel weight.
 // Without ranks media do not nest: a ray that leaves a dielectric is outside. Radiance is not scaled by eta^2 (Whitted's model).
 void shade_whitted(PathState path, Surface surface, Material material) {

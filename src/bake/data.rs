@@ -2,9 +2,10 @@
 
 use super::BakeError;
 use crate::layout::{
-    Emitter, EnvironmentMap, Face, Instance, Light, Material, Node, PARAMETER_MASK, PARAMETER_OPACITY, SceneHeader,
-    SceneView, Texture, Triangle, Vertex,
+    Emitter, EnvironmentMap, Face, INTEGRATOR_WHITTED, Instance, Light, Material, Node, PARAMETER_MASK,
+    PARAMETER_OPACITY, SceneHeader, SceneView, Texture, Triangle, Vertex,
 };
+use crate::shading::material::is_refracting;
 use serde::{Deserialize, Serialize};
 
 /// One array of the data heap, as it is uploaded.
@@ -73,6 +74,12 @@ impl SceneData {
     pub fn has_panes(&self) -> bool {
         let cuts = |texture: &Texture| matches!(texture.parameter, PARAMETER_OPACITY | PARAMETER_MASK);
         self.textures.iter().any(cuts) || self.materials.iter().any(|material| material.k_t > 0.0)
+    }
+
+    /// Whether more than one ray may go on from where one ends: in Whitted's model, behind glass and panes.
+    pub fn branches(&self) -> bool {
+        let whitted = self.header.integrator == INTEGRATOR_WHITTED;
+        whitted && (self.has_panes() || self.materials.iter().any(is_refracting))
     }
 
     /// The arrays as the twins take them.

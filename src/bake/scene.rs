@@ -58,6 +58,7 @@ pub fn bake_watched(scene: &Scene, watch: &Watch) -> Result<SceneData, BakeError
     data.header.instance_count = data.instances.len() as u32;
     data.header.light_count = data.lights.len() as u32;
     data.header.shadow_rays = shadow_rays(&data);
+    data.header.level_count = if data.branches() { data.header.max_depth + 1 } else { 1 };
     let shadowless = data.instances.iter().any(|instance| instance.flags & INSTANCE_NO_SHADOW != 0);
     data.header.shadowless = u32::from(shadowless && data.header.integrator == INTEGRATOR_PATH);
     if data.header.shadows == SHADOWS_FILTERED && !data.has_panes() {
@@ -391,7 +392,6 @@ fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
         clamp: settings.clamp.unwrap_or(0.0),
         hide_background: u32::from(settings.hide_emitters && traced(scene)),
         hide_emitters: u32::from(settings.hide_emitters && traced(scene)),
-        level_count: if settings.integrator == Integrator::Whitted { max_depth + 1 } else { 1 },
         ..SceneHeader::default()
     })
 }

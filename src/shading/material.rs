@@ -204,6 +204,13 @@ pub fn albedo_material(material: &Material) -> Spectrum {
     spectrum_from_rgb(Vec3::new(clamp_(rgb.x, 0.0, 1.0), clamp_(rgb.y, 0.0, 1.0), clamp_(rgb.z, 0.0, 1.0)))
 }
 
+/// True if whitted follows what the material transmits: glass, drawn smooth even if it is rough, and thin panes.
+pub fn is_refracting(material: &Material) -> bool {
+    material.model == MODEL_DIELECTRIC
+        || material.model == MODEL_ROUGH_DIELECTRIC
+        || material.model == MODEL_THIN_DIELECTRIC
+}
+
 /// True if the model has lobes of zero width only: no light needs to be sampled for it.
 #[inline]
 pub fn is_delta(material: &Material) -> bool {

@@ -3,15 +3,13 @@
 use super::local::{facing_normal, is_hidden_back};
 use super::nested::medium_absorption;
 use super::{LOBE_MIRROR, LOBE_REFRACT, Queues, push_path};
-use crate::layout::{
-    MODEL_DIELECTRIC, MODEL_ROUGH_DIELECTRIC, MODEL_THIN_DIELECTRIC, Material, PathState, SceneView, T_INFINITE,
-};
+use crate::layout::{MODEL_THIN_DIELECTRIC, Material, PathState, SceneView, T_INFINITE};
 use crate::shading::delta::thin_reflectance;
 use crate::shading::dielectric::refract_local;
 use crate::shading::frame::{frame_from_normal, to_local, to_world};
 use crate::shading::fresnel::fresnel_dielectric;
 use crate::shading::interior::cross_interface;
-use crate::shading::material::{mirror_weight, own_weight};
+use crate::shading::material::{is_refracting, mirror_weight, own_weight};
 use crate::shading::math::{dot3, rcp};
 use crate::shading::sampling::hash_combine;
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_max};
@@ -52,13 +50,6 @@ pub fn mirror_direction(surface: &Surface, wo: Vec3) -> Vec3 {
         return mirrored;
     }
     geometric * (2.0 * cos_geometric) - wo
-}
-
-/// True if whitted follows what the material transmits: glass, drawn smooth even if it is rough, and thin panes.
-pub fn is_refracting(material: &Material) -> bool {
-    material.model == MODEL_DIELECTRIC
-        || material.model == MODEL_ROUGH_DIELECTRIC
-        || material.model == MODEL_THIN_DIELECTRIC
 }
 
 /// Follows the mirror branch of any material and both branches of a dielectric, each with its Fresnel weight.

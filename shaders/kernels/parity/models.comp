@@ -76,7 +76,7 @@ void main() {
         result(0u, ambient_material(m).x);
         result(1u, albedo_material(m).y + pane_tint(m).y);
         result4(2u, mirror_weight(m, argument(5u)));
-        result_u(6u, is_delta(m) ? 1u : 0u);
+        result_u(6u, (is_delta(m) ? 1u : 0u) | (is_refracting(m) ? 2u : 0u));
         result(7u, emission_material(m).x + own_weight(m));
         break;
     }

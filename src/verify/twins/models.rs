@@ -9,8 +9,8 @@ use crate::layout::{
     MODEL_TABULATED, MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneHeader, SceneView,
 };
 use crate::shading::material::{
-    albedo_material, ambient_material, emission_material, eval_material, is_delta, mirror_weight, own_weight,
-    pane_tint, pdf_material, sample_material,
+    albedo_material, ambient_material, emission_material, eval_material, is_delta, is_refracting, mirror_weight,
+    own_weight, pane_tint, pdf_material, sample_material,
 };
 use crate::shading::sampling::{hash_u32, unit_float};
 use crate::verify::inputs::Domain::{self, Below, Direction, Range};
@@ -102,10 +102,12 @@ fn sample(i: &In, o: &mut Out, model: u32) {
 
 fn rest(i: &In, o: &mut Out, model: u32) {
     let m = material(i, model);
-    o.f(ambient_material(&m).x)
-        .f(albedo_material(&m).y + pane_tint(&m).y)
-        .v4(mirror_weight(&m, i.f(5)))
-        .u(u32::from(is_delta(&m)));
+    o.f(ambient_material(&m).x).f(albedo_material(&m).y + pane_tint(&m).y).v4(mirror_weight(&m, i.f(5))).u(u32::from(
+        is_delta(&m),
+    ) | u32::from(
+        is_refracting(&m),
+    )
+        << 1);
     o.f(emission_material(&m).x + own_weight(&m));
 }
 
