@@ -68,7 +68,7 @@ impl Tally {
         Tally { last: control, counters: Counters::default(), nan_count: 0, clamped_count: 0 }
     }
 
-    /// Reads the record after a submission; the result is the rounds that had work.
+    /// Reads the record after a submission; the result is its rounds, up to the one that was done.
     fn read(&mut self, queues: &Queues) -> Result<u32, VulkanError> {
         let control = queues.read_control();
         if control.overflows != 0 {
