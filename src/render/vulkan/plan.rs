@@ -102,7 +102,7 @@ impl QueuePlan {
     }
 }
 
-/// Bytes a queue may have: queues are bound as storage buffers and, where kernels fetch so, as texel buffers.
+/// Bytes a queue or a film may have: they are bound as storage buffers and, where kernels fetch so, as texel buffers.
 fn binding_limit(info: &DeviceInfo, fetch: Fetch) -> u64 {
     let limits = info.limits;
     let texel = if fetch == Fetch::Texel { limits.texel_elements.saturating_mul(16) } else { u64::MAX };
@@ -111,9 +111,8 @@ fn binding_limit(info: &DeviceInfo, fetch: Fetch) -> u64 {
 
 /// Cuts `crop` into bands of whole rows whose film (and auxiliary values) one buffer of the device holds. `most` lowers the
 /// bytes of that buffer.
-pub fn bands(info: &DeviceInfo, crop: Rect, aovs: bool, most: Option<u64>) -> Vec<Rect> {
-    let limits = info.limits;
-    let bytes = limits.storage_range.min(limits.allocation).min(limits.heap / 8).min(most.unwrap_or(u64::MAX));
+pub fn bands(info: &DeviceInfo, fetch: Fetch, crop: Rect, aovs: bool, most: Option<u64>) -> Vec<Rect> {
+    let bytes = binding_limit(info, fetch).min(info.limits.heap / 8).min(most.unwrap_or(u64::MAX));
     let pixel = if aovs { size_of::<AovPixel>() } else { size_of::<FilmSum>() } as u64;
     bands_of(crop, bytes / pixel)
 }

@@ -254,7 +254,8 @@ impl Renderer for VulkanRenderer {
     }
 
     fn accumulate(&mut self, job: &Job, film: &mut Film, watch: &Watch) -> Result<Counters, RenderError> {
-        let bands = plan::bands(self.context.info(), job.crop, self.header.aovs != 0, self.page_limit);
+        let bands =
+            plan::bands(self.context.info(), self.scene.fetch(), job.crop, self.header.aovs != 0, self.page_limit);
         let pixels = bands.iter().map(|band| band.area() as u64).max().unwrap_or(0);
         let samples = u64::from(job.samples.end.saturating_sub(job.samples.start));
         self.samples = self.samples.saturating_add(job.crop.area() as u64 * samples);

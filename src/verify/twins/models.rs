@@ -102,12 +102,8 @@ fn sample(i: &In, o: &mut Out, model: u32) {
 
 fn rest(i: &In, o: &mut Out, model: u32) {
     let m = material(i, model);
-    o.f(ambient_material(&m).x).f(albedo_material(&m).y + pane_tint(&m).y).v4(mirror_weight(&m, i.f(5))).u(u32::from(
-        is_delta(&m),
-    ) | u32::from(
-        is_refracting(&m),
-    )
-        << 1);
+    let kinds = u32::from(is_delta(&m)) | u32::from(is_refracting(&m)) << 1;
+    o.f(ambient_material(&m).x).f(albedo_material(&m).y + pane_tint(&m).y).v4(mirror_weight(&m, i.f(5))).u(kinds);
     o.f(emission_material(&m).x + own_weight(&m));
 }
 
