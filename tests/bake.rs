@@ -26,15 +26,16 @@ fn child_box(node: &Node, slot: u32) -> (DVec3, DVec3) {
     (plane(node.min_x, node.min_y, node.min_z), plane(node.max_x, node.max_y, node.max_z))
 }
 
-/// Calls `leaf` with every primitive of the tree below `root` once; checks that all child boxes contain what `bounds`
-/// says about the primitives below. Returns the bounds of everything.
+/// Puts every primitive below node `index` of the tree below `root` into `seen` once; checks that all child boxes contain what
+/// `bounds` says about the primitives below. Returns the bounds of everything.
 fn check_tree(
     data: &SceneData,
     root: u32,
+    index: u32,
     bounds: &dyn Fn(u32) -> (DVec3, DVec3),
     seen: &mut Vec<u32>,
 ) -> (DVec3, DVec3) {
-    let node = &data.nodes[root as usize];
+    let node = &data.nodes[index as usize];
     let inner_mask = node.exponents_imask >> 24;
     let mut all = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for slot in 0..8 {
@@ -44,8 +45,7 @@ fn check_tree(
         }
         let inside = if inner_mask & (1 << slot) != 0 {
             assert_eq!(meta, 0b0010_0000 | (24 + slot));
-            let before = (inner_mask & ((1 << slot) - 1)).count_ones();
-            check_tree(data, node.child_base + before, bounds, seen)
+            check_tree(data, root, root + (node.children >> 8) + slot - 7, bounds, seen)
         } else {
             let count = (meta >> 5).count_ones();
             assert!(count <= 3);
@@ -73,7 +73,13 @@ fn check_scene(data: &SceneData) {
             (0..50).map(|_| random.direction().as_dvec3()).collect()
         } else {
             let mut seen = Vec::new();
-            check_tree(data, instance.root, &|p| triangle_bounds(&data.triangles[p as usize]), &mut seen);
+            check_tree(
+                data,
+                instance.root,
+                instance.root,
+                &|p| triangle_bounds(&data.triangles[p as usize]),
+                &mut seen,
+            );
             let mut once = seen.clone();
             once.sort_unstable();
             once.dedup();
@@ -95,7 +101,7 @@ fn check_scene(data: &SceneData) {
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
     };
     let mut seen = Vec::new();
-    check_tree(data, data.header.top_root, &world, &mut seen);
+    check_tree(data, data.header.top_root, data.header.top_root, &world, &mut seen);
     seen.sort_unstable();
     assert_eq!(seen, (0..data.instances.len() as u32).collect::<Vec<_>>());
 }

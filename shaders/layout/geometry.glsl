@@ -4,15 +4,16 @@
 
 // One node of the compressed eight-wide BVH (Ylitie, Karras and Laine 2017,
 // "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"),
-// in obvhs's order: min and max planes interleaved per axis. 80 bytes.
+// in obvhs's order, min and max planes interleaved per axis, but for where children stand. 80 bytes.
 // Boxes are conservative: bake has grown each child (DESIGN: strict rule 6).
 struct Node {
     // Minimum corner of the node's box, object space of its mesh (or world, for the top level).
     vec3 origin;
     // Bytes 0-2: raw float exponents of the child grid per axis; byte 3: bit mask of inner children.
     uint exponents_imask;
-    // Index of the first inner child in the node array (absolute).
-    uint child_base;
+    // Where inner children stand: that of slot s at index root - 7 + (`children` >> 8) + s, with the root of this hierarchy.
+    // The lowest byte is 0: there a walk keeps which of them it has yet to visit.
+    uint children;
     // Index of the first primitive: into `triangles` (absolute) for a mesh, into `top_instances` for the top level.
     uint primitive_base;
     // Eight bytes: 0 empty; leaf = unary count in the top 3 bits + offset 0..23; inner = 001 and slot + 24.
@@ -35,7 +36,7 @@ Node load_node(uint index) {
     r.origin = uintBitsToFloat(w0.xyz);
     r.exponents_imask = w0.w;
     uvec4 w1 = fetch_node(at + 1u);
-    r.child_base = w1.x;
+    r.children = w1.x;
     r.primitive_base = w1.y;
     r.child_meta = w1.zw;
     uvec4 w2 = fetch_node(at + 2u);

@@ -20,10 +20,10 @@
 
 // More turns than any loop here takes.
 const uint TURNS_MOST = 0xffffffffu;
-// Groups with no child left are at most this.
-const uint GROUP_EMPTY = 0x00ffffffu;
-// Hit bits of a group whose only child is a root: priority 7 of an empty mask of inner children.
-const uint GROUP_ROOT = 0x80000000u;
+// Bits of a group: by priority, the children that were hit and not yet taken.
+const uint GROUP_HITS = 0x000000ffu;
+// Bits of a primitive group: one a primitive.
+const uint PRIMITIVE_HITS = 0x00ffffffu;
 
 // Whether a hit at `t` replaces `hit`: it is nearer, or as near and lower in (instance, primitive), so that the order
 // of the walk does not matter.
@@ -42,12 +42,16 @@ uint highest_bit(uint x) {
 #endif
 }
 
-// Takes the nearest child out of a group: its index in the node array.
-uint take_child(inout uvec2 group, uint octant) {
-    uint bit = highest_bit(group.y >> 24u);
-    group.y &= ~(0x01000000u << bit);
-    uint slot = bit ^ (octant & 255u);
-    return group.x + uint(bitCount(group.y & ~(0xffffffffu << slot)));
+// The group of a root alone: its priority is 7, and so its place.
+uint root_group(uint octant) {
+    return ((octant & 7u) << 8u) | 0x80u;
+}
+
+// Takes the nearest child out of a group: its index in the node array, less that of the root, plus 7.
+uint take_child(inout uint group, uint octant) {
+    uint bit = highest_bit(group & GROUP_HITS);
+    group &= ~(1u << bit);
+    return (group >> 8u) + (bit ^ (octant & 7u));
 }
 
 // Takes one primitive out of a primitive group: its index in its array.
@@ -89,10 +93,10 @@ void test_sphere(Ray ray, LevelRay level, uint instance, inout Hit hit) {
 // Walks the mesh of `instance` below `root`; `level` is the ray in its object space, `hit` becomes the closer of it and
 // what is found. With `any` the first hit ends the walk.
 void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inout Hit hit) {
-    uvec2 stack[STACK_DEPTH + 1u];
+    uint stack[STACK_DEPTH + 1u];
     uint height = 0u;
     vec3 widening = approx_widening(load_node(root), level, MESH_MARGIN);
-    uvec2 group = uvec2(root, GROUP_ROOT);
+    uint group = root_group(level.octant);
     // What waits to be tested, the last found first. Lanes wait for one another at the end of either loop; what each
     // may put aside evens out what they wait for.
     uvec2 triangles = uvec2(0u);
@@ -102,18 +106,18 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
     for (uint turn = 0u; turn < TURNS_MOST; turn++) {
         // Nodes until there is no room for more triangles.
         for (uint step_ = 0u; step_ < TURNS_MOST; step_++) {
-            uint index = take_child(group, level.octant);
+            uint index = root - 7u + take_child(group, level.octant);
             stack[height] = group;
-            height += group.y > GROUP_EMPTY ? 1u : 0u;
+            height += (group & GROUP_HITS) != 0u ? 1u : 0u;
             Node node = load_node(index);
             uint hits = approx_intersect_node(node, level, widening, hit.t);
-            group = uvec2(node.child_base, (hits & 0xff000000u) | (node.exponents_imask >> 24u));
-            if ((hits & GROUP_EMPTY) != 0u) {
+            group = node.children | (hits >> 24u);
+            if ((hits & PRIMITIVE_HITS) != 0u) {
                 triangles2 = triangles1;
                 triangles1 = triangles;
-                triangles = uvec2(node.primitive_base, hits & GROUP_EMPTY);
+                triangles = uvec2(node.primitive_base, hits & PRIMITIVE_HITS);
             }
-            if (group.y <= GROUP_EMPTY) {
+            if ((group & GROUP_HITS) == 0u) {
                 walking = height != 0u;
                 if (walking) {
                     height -= 1u;
@@ -170,31 +174,31 @@ Hit traverse(Ray ray, bool any, bool casting) {
         enter_instance(ray, 0u, any, casting, hit);
         return hit;
     }
-    uvec2 stack[STACK_DEPTH];
+    uint stack[STACK_DEPTH];
     uint height = 0u;
     LevelRay world = prepare_ray(ray.origin, ray.direction);
     vec3 widening = approx_widening(load_node(header.top_root), world, header.top_margin);
-    uvec2 group = uvec2(header.top_root, GROUP_ROOT);
+    uint group = root_group(world.octant);
     uvec2 instances = uvec2(0u);
     for (uint turn = 0u; turn < TURNS_MOST; turn++) {
         // Nodes until there is an instance.
         for (uint step_ = 0u; step_ < TURNS_MOST; step_++) {
             if (instances.y == 0u) {
-                if (group.y <= GROUP_EMPTY) {
+                if ((group & GROUP_HITS) == 0u) {
                     height -= 1u;
                     group = stack[height];
                 }
-                uint index = take_child(group, world.octant);
-                if (group.y > GROUP_EMPTY) {
+                uint index = header.top_root - 7u + take_child(group, world.octant);
+                if ((group & GROUP_HITS) != 0u) {
                     stack[height] = group;
                     height += 1u;
                 }
                 Node node = load_node(index);
                 uint hits = approx_intersect_node(node, world, widening, hit.t);
-                group = uvec2(node.child_base, (hits & 0xff000000u) | (node.exponents_imask >> 24u));
-                instances = uvec2(node.primitive_base, hits & GROUP_EMPTY);
+                group = node.children | (hits >> 24u);
+                instances = uvec2(node.primitive_base, hits & PRIMITIVE_HITS);
             }
-            if (instances.y != 0u || (group.y <= GROUP_EMPTY && height == 0u)) {
+            if (instances.y != 0u || ((group & GROUP_HITS) == 0u && height == 0u)) {
                 break;
             }
         }
@@ -202,7 +206,7 @@ Hit traverse(Ray ray, bool any, bool casting) {
         if (instances.y != 0u) {
             enter_instance(ray, take_primitive(instances), any, casting, hit);
         }
-        bool done = instances.y == 0u && group.y <= GROUP_EMPTY && height == 0u;
+        bool done = instances.y == 0u && (group & GROUP_HITS) == 0u && height == 0u;
         if (done || (any && hit.instance != INVALID)) {
             break;
         }

@@ -5,6 +5,7 @@
 //! depth has no bound, so boxes are quantised here, from the exact bounds of what lies below, and a tree too deep for the
 //! traversal stack is replaced by a median split.
 
+use super::places::{NODES_MOST, Places};
 use super::split::{Cut, cut};
 use super::wide::{Part, widen};
 use super::{BakeError, Watch};
@@ -96,6 +97,9 @@ impl Tree {
         if stack > STACK_SIZE {
             let items: Vec<Item> = parts.iter().flat_map(Part::leaves).copied().collect();
             (nodes, order, stack) = median_split(&items, leaf);
+            if nodes.len() > NODES_MOST {
+                return Err(BakeError::Nodes { count: nodes.len() });
+            }
         }
         let wide_s = start.elapsed().as_secs_f64() - binary_s;
         let bounds = Some(Bounds::from(top.bounds()));
@@ -169,7 +173,8 @@ fn part_nodes(builder: &mut PlocBuilder, items: &[Item]) -> Vec<Item> {
 /// Its nodes, the order of its primitives and the stack that it needs.
 fn median_split(items: &[Item], leaf: u32) -> (Vec<Node>, Vec<u32>, u32) {
     let (mut nodes, mut order) = (vec![Node::default()], Vec::with_capacity(items.len()));
-    let mut waiting = vec![(0usize, (0..items.len() as u32).collect::<Vec<u32>>())];
+    let mut places = Places::new();
+    let mut waiting = vec![(0, (0..items.len() as u32).collect::<Vec<u32>>())];
     while let Some((index, inside)) = waiting.pop() {
         let mut parts = vec![inside];
         while parts.len() < 8 {
@@ -184,8 +189,9 @@ fn median_split(items: &[Item], leaf: u32) -> (Vec<Node>, Vec<u32>, u32) {
         let bounds: Vec<Aabb> = parts.iter().map(around).collect();
         let whole = bounds.iter().fold(Aabb::INVALID, |all, part| all.union(part));
         let centres: Vec<Vec3A> = bounds.iter().map(|part| part.min + part.max).collect();
-        let (child_base, primitive_base) = (nodes.len() as u32, order.len() as u32);
+        let primitive_base = order.len() as u32;
         let (mut inner_mask, mut meta, mut boxes) = (0u8, [0u8; 8], [Bounds::EMPTY; 8]);
+        let mut inner = Vec::new();
         for (slot, part) in octant_slots(&centres, whole.min + whole.max).into_iter().enumerate() {
             let Some(part) = part else { continue };
             boxes[slot] = Bounds::from(&bounds[part]);
@@ -197,12 +203,15 @@ fn median_split(items: &[Item], leaf: u32) -> (Vec<Node>, Vec<u32>, u32) {
             } else {
                 inner_mask |= 1 << slot;
                 meta[slot] = 0b0010_0000 | (24 + slot as u8);
-                waiting.push((nodes.len(), part));
-                nodes.push(Node::default());
+                inner.push(part);
             }
         }
+        let children = places.take(index, inner_mask);
+        nodes.resize(places.len(), Node::default());
         let node = pack_node(&Bounds::from(&whole), &boxes, inner_mask, meta);
-        nodes[index] = Node { child_base, primitive_base, ..node };
+        let node = Node { children, primitive_base, ..node };
+        waiting.extend(node.inner_children(0).map(|(_, place)| place).zip(inner));
+        nodes[index as usize] = node;
     }
     let stack = stack_needs(&nodes, vec![0; nodes.len()]);
     (nodes, order, stack)
@@ -212,9 +221,9 @@ fn median_split(items: &[Item], leaf: u32) -> (Vec<Node>, Vec<u32>, u32) {
 /// sibling (some octant visits it first). `known`: the need of nodes that have no children yet.
 pub(super) fn stack_needs(nodes: &[Node], mut known: Vec<u32>) -> u32 {
     for (index, node) in nodes.iter().enumerate().rev() {
-        let inner = (node.exponents_imask >> 24).count_ones();
-        let children = node.child_base as usize..(node.child_base + inner) as usize;
-        let deepest = known[children].iter().copied().max().map_or(0, |need| need + u32::from(inner > 1));
+        let siblings = (node.exponents_imask >> 24).count_ones() > 1;
+        let below = node.inner_children(0).map(|(_, child)| known[child as usize]).max();
+        let deepest = below.map_or(0, |need| need + u32::from(siblings));
         known[index] = known[index].max(deepest);
     }
     known.first().copied().unwrap_or(0)
@@ -315,7 +324,7 @@ pub(super) fn pack_node(bounds: &Bounds, children: &[Bounds; 8], inner_mask: u8,
     Node {
         origin,
         exponents_imask: raw[0] | raw[1] << 8 | raw[2] << 16 | u32::from(inner_mask) << 24,
-        child_base: 0,
+        children: 0,
         primitive_base: 0,
         child_meta: words(meta),
         min_x: words(planes[0][0]),

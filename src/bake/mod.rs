@@ -17,6 +17,7 @@ mod measured;
 mod media;
 mod mip;
 mod model;
+mod places;
 mod scene;
 mod split;
 pub mod srgb;
@@ -52,6 +53,9 @@ pub enum BakeError {
     /// An index would not fit into 32 bits.
     #[error("the scene has {count} {what}; at most 4294967295 are possible")]
     TooLarge { what: &'static str, count: u64 },
+    /// A node would not find its children.
+    #[error("a hierarchy of {count} nodes is needed; at most {most} are possible in a mesh", most = places::NODES_MOST)]
+    Nodes { count: usize },
     /// A transform that single precision cannot carry.
     #[error(
         "object \"{name}\" is too large, too small or too far away: sizes from 1e-10 to 1e10 and coordinates up to 1e10 are possible"

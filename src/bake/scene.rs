@@ -10,7 +10,6 @@ use super::media::rank_media;
 use super::model::{bake_blends, bake_material, casts_shadow};
 use super::srgb::srgb_table;
 use super::texture::{bake_textures, bind_textures};
-use super::wide::moved;
 use super::{BakeError, SceneData, Watch};
 use crate::layout::{
     Camera, INSTANCE_FLAT, INSTANCE_GOURAUD, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH,
@@ -333,13 +332,12 @@ fn build_hierarchy(mut parts: Parts, data: &mut SceneData, watch: &Watch) -> Res
         };
         let first = (data.nodes.len() as u32, data.triangles.len() as u32);
         roots[id] = first.0;
-        append(&mut data.nodes, shifted(std::mem::take(&mut mesh.tree.nodes), first), nodes);
+        append(&mut data.nodes, shifted(std::mem::take(&mut mesh.tree.nodes), first.1), nodes);
         append(&mut data.triangles, std::mem::take(&mut mesh.triangles), triangles);
     }
     // The top level last, so that the nodes of a large mesh need not make room for it.
     data.header.top_root = data.nodes.len() as u32;
-    let first = (data.header.top_root, 0);
-    append(&mut data.nodes, shifted(top.nodes, first), nodes);
+    append(&mut data.nodes, top.nodes, nodes);
     data.top_instances = top.order;
     for (instance, (mesh, _)) in data.instances.iter_mut().zip(&parts.shown) {
         instance.root = mesh.map_or(INVALID, |id| roots[id]);
@@ -348,10 +346,10 @@ fn build_hierarchy(mut parts: Parts, data: &mut SceneData, watch: &Watch) -> Res
     Ok(())
 }
 
-/// Nodes of a hierarchy whose nodes and primitives begin at `first` in the scene's arrays.
-fn shifted(mut nodes: Vec<Node>, first: (u32, u32)) -> Vec<Node> {
-    if first != (0, 0) {
-        nodes.par_iter_mut().for_each(|node| *node = moved(node, first));
+/// Nodes of a hierarchy whose primitives begin at `first` in the scene's array.
+fn shifted(mut nodes: Vec<Node>, first: u32) -> Vec<Node> {
+    if first != 0 {
+        nodes.par_iter_mut().for_each(|node| node.primitive_base += first);
     }
     nodes
 }

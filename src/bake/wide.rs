@@ -6,6 +6,7 @@
 //! solved and written by itself. Where it was cut does not change the result.
 
 use super::bvh::{Bounds, Item, octant_slots, pack_node, stack_needs};
+use super::places::{NODES_MOST, Places};
 use super::{BakeError, Watch};
 use crate::layout::Node;
 use glam::Vec3A;
@@ -230,7 +231,8 @@ impl Whole<'_> {
     fn write(&self, root: Place, put_off: impl Fn(Place) -> bool) -> (Written, Vec<(Place, u32)>) {
         let mut out = Written { nodes: vec![Node::default()], ..Written::default() };
         let (mut waiting, mut later) = (vec![(root, 0u32)], Vec::new());
-        let mut roots = Vec::with_capacity(8);
+        let mut places = Places::new();
+        let (mut roots, mut inner) = (Vec::with_capacity(8), Vec::with_capacity(8));
         while let Some((place, number)) = waiting.pop() {
             roots.clear();
             self.forest(place, 8, &mut roots);
@@ -240,7 +242,7 @@ impl Whole<'_> {
                 *centre = self.get(root).aabb().min + self.get(root).aabb().max;
             }
             let children = octant_slots(&centres[..roots.len()], around.min + around.max);
-            let (child_base, primitive_base) = (out.nodes.len() as u32, out.order.len() as u32);
+            let primitive_base = out.order.len() as u32;
             let (mut inner_mask, mut meta, mut boxes) = (0u8, [0u8; 8], [Bounds::EMPTY; 8]);
             for (slot, child) in children.into_iter().enumerate() {
                 let Some(&child) = child.and_then(|child| roots.get(child)) else { continue };
@@ -254,12 +256,14 @@ impl Whole<'_> {
                 }
                 inner_mask |= 1 << slot;
                 meta[slot] = 0b0010_0000 | (24 + slot as u8);
-                let number = out.nodes.len() as u32;
-                out.nodes.push(Node::default());
+                inner.push(child);
+            }
+            let children = places.take(number, inner_mask);
+            out.nodes.resize(places.len(), Node::default());
+            let node = Node { children, primitive_base, ..pack_node(&Bounds::from(around), &boxes, inner_mask, meta) };
+            for (child, (_, number)) in inner.drain(..).zip(node.inner_children(0)) {
                 if put_off(child) { later.push((child, number)) } else { waiting.push((child, number)) }
             }
-            let node =
-                Node { child_base, primitive_base, ..pack_node(&Bounds::from(around), &boxes, inner_mask, meta) };
             out.nodes[number as usize] = node;
         }
         (out, later)
@@ -283,6 +287,9 @@ pub fn widen(top: &Part, parts: &[Part], watch: &Watch) -> Result<(Vec<Node>, Ve
     let below = later.par_iter().map(write).collect::<Result<Vec<Written>, BakeError>>()?;
     // A part's root has its place already; the others follow what is there, one number earlier.
     let node_count = first.nodes.len() + below.iter().map(|part| part.nodes.len() - 1).sum::<usize>();
+    if node_count > NODES_MOST {
+        return Err(BakeError::Nodes { count: node_count });
+    }
     let order_count = first.order.len() + below.iter().map(|part| part.order.len()).sum::<usize>();
     let mut needs = vec![0; first.nodes.len()];
     later.iter().zip(&below).for_each(|(&(_, number), part)| needs[number as usize] = part.stack);
@@ -309,9 +316,9 @@ pub fn widen(top: &Part, parts: &[Part], watch: &Watch) -> Result<(Vec<Node>, Ve
     Ok((nodes, order, stack))
 }
 
-/// The same node where nodes and primitives begin later.
-pub fn moved(node: &Node, (nodes, primitives): (u32, u32)) -> Node {
-    Node { child_base: node.child_base + nodes, primitive_base: node.primitive_base + primitives, ..*node }
+/// The same node where its hierarchy's nodes and its primitives begin later.
+fn moved(node: &Node, (nodes, primitives): (u32, u32)) -> Node {
+    Node { children: node.children + (nodes << 8), primitive_base: node.primitive_base + primitives, ..*node }
 }
 
 #[cfg(test)]
@@ -359,7 +366,8 @@ mod tests {
 
     /// A node of a wide tree without its boxes.
     struct Bare {
-        child_base: u32,
+        /// Of the inner children, by slot.
+        children: Vec<usize>,
         primitive_base: u32,
         inner_mask: u8,
         meta: [u8; 8],
@@ -373,13 +381,13 @@ mod tests {
         let mut around = vec![Aabb::empty(); nodes.len()];
         let mut cost = 0.0;
         for (index, node) in nodes.iter().enumerate().rev() {
-            let mut inner = node.child_base as usize;
+            let mut inner = node.children.iter();
             for slot in 0..8 {
                 let meta = node.meta[slot];
                 let (inside, weight) = if node.inner_mask & 1 << slot != 0 {
-                    assert!(inner > index, "children come after their parents");
-                    inner += 1;
-                    (around[inner - 1], 1.0)
+                    let &child = inner.next().expect("a child for every bit of the mask");
+                    assert!(child > index, "children come after their parents");
+                    (around[child], 1.0)
                 } else if meta != 0 {
                     let first = node.primitive_base as usize + usize::from(meta & 31);
                     let count = (meta >> 5).count_ones() as usize;
@@ -409,7 +417,7 @@ mod tests {
             let ours: Vec<Bare> = nodes
                 .iter()
                 .map(|n| Bare {
-                    child_base: n.child_base,
+                    children: n.inner_children(0).map(|(_, child)| child as usize).collect(),
                     primitive_base: n.primitive_base,
                     inner_mask: (n.exponents_imask >> 24) as u8,
                     meta: bytes(n.child_meta),
@@ -417,7 +425,7 @@ mod tests {
                 .collect();
             let theirs = bvh2_to_cwbvh(&joined(&top, &parts, count), most, true, false);
             let bare = |n: &obvhs::cwbvh::node::CwBvhNode| Bare {
-                child_base: n.child_base_idx,
+                children: (n.child_base_idx as usize..).take(n.imask.count_ones() as usize).collect(),
                 primitive_base: n.primitive_base_idx,
                 inner_mask: n.imask,
                 meta: n.child_meta,

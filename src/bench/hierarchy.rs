@@ -46,7 +46,7 @@ pub fn size_of_scene(data: &SceneData) -> Size {
         triangles: data.triangles.len() as u64,
         instances: data.instances.len() as u64,
         placed,
-        nodes: data.nodes.len() as u64,
+        nodes: data.nodes.iter().filter(|node| node.child_meta != [0; 2]).count() as u64,
         sah: if data.header.top_root == INVALID { 0.0 } else { top.cost(data.header.top_root) },
         node_bytes: size_of_val(data.nodes.as_slice()) as u64,
         triangle_bytes: size_of_val(data.triangles.as_slice()) as u64,
@@ -114,14 +114,13 @@ impl<'a, F: Fn(u32) -> f64> Level<'a, F> {
         let mut waiting = vec![root];
         while let Some(index) = waiting.pop() {
             let node = &self.data.nodes[index as usize];
-            let mut inner = node.child_base;
+            for (slot, child) in node.inner_children(root) {
+                visit(node, slot as usize, None);
+                waiting.push(child);
+            }
             for slot in 0..8 {
                 let meta = byte(node.child_meta, slot);
-                if node.exponents_imask >> (24 + slot) & 1 != 0 {
-                    visit(node, slot, None);
-                    waiting.push(inner);
-                    inner += 1;
-                } else if meta != 0 {
+                if node.exponents_imask >> (24 + slot) & 1 == 0 && meta != 0 {
                     let first = node.primitive_base + (meta & 31);
                     visit(node, slot, Some(first..first + (meta >> 5).count_ones()));
                 }

@@ -5,7 +5,7 @@ use glam::{Vec3, Vec4};
 
 /// One node of the compressed eight-wide BVH (Ylitie, Karras and Laine 2017,
 /// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"),
-/// in obvhs's order: min and max planes interleaved per axis. 80 bytes.
+/// in obvhs's order, min and max planes interleaved per axis, but for where children stand. 80 bytes.
 /// Boxes are conservative: bake has grown each child (DESIGN: strict rule 6).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -14,8 +14,9 @@ pub struct Node {
     pub origin: Vec3,
     /// Bytes 0-2: raw float exponents of the child grid per axis; byte 3: bit mask of inner children.
     pub exponents_imask: u32,
-    /// Index of the first inner child in the node array (absolute).
-    pub child_base: u32,
+    /// Where inner children stand: that of slot s at index root - 7 + (`children` >> 8) + s, with the root of this hierarchy.
+    /// The lowest byte is 0: there a walk keeps which of them it has yet to visit.
+    pub children: u32,
     /// Index of the first primitive: into `triangles` (absolute) for a mesh, into `top_instances` for the top level.
     pub primitive_base: u32,
     /// Eight bytes: 0 empty; leaf = unary count in the top 3 bits + offset 0..23; inner = 001 and slot + 24.
@@ -27,6 +28,14 @@ pub struct Node {
     pub max_y: [u32; 2],
     pub min_z: [u32; 2],
     pub max_z: [u32; 2],
+}
+
+impl Node {
+    /// Slots of the inner children and where these stand. `root`: index of the hierarchy's root. Rust only.
+    pub fn inner_children(&self, root: u32) -> impl Iterator<Item = (u32, u32)> + use<> {
+        let (mask, first) = (self.exponents_imask >> 24, root.wrapping_sub(7).wrapping_add(self.children >> 8));
+        (0..8).filter(move |slot| mask >> slot & 1 != 0).map(move |slot| (slot, first.wrapping_add(slot)))
+    }
 }
 
 /// Entries of a traversal stack, one for the top level and one for meshes; bake builds no hierarchy that needs more.

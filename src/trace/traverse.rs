@@ -20,35 +20,35 @@ use pulp::x86::V3;
 
 /// Groups put aside. Bake has proved that it is high enough.
 struct Stack {
-    groups: [UVec2; STACK_SIZE as usize],
+    groups: [u32; STACK_SIZE as usize],
     len: usize,
 }
 
 impl Stack {
     #[inline(always)]
     fn new() -> Self {
-        Self { groups: [UVec2::ZERO; STACK_SIZE as usize], len: 0 }
+        Self { groups: [0; STACK_SIZE as usize], len: 0 }
     }
 
     /// `deepest` becomes the number of entries in use at the worst moment.
     #[inline(always)]
-    fn push(&mut self, group: UVec2, deepest: &mut u32) {
+    fn push(&mut self, group: u32, deepest: &mut u32) {
         self.groups[self.len] = group;
         self.len += 1;
         *deepest = (*deepest).max(self.len as u32);
     }
 
     #[inline(always)]
-    fn pop(&mut self) -> Option<UVec2> {
+    fn pop(&mut self) -> Option<u32> {
         self.len = self.len.checked_sub(1)?;
         Some(self.groups[self.len])
     }
 }
 
-/// Groups with no child left are at most this.
-const GROUP_EMPTY: u32 = 0x00ff_ffff;
-/// Hit bits of a group whose only child is a root: priority 7 of an empty mask of inner children.
-const GROUP_ROOT: u32 = 0x8000_0000;
+/// Bits of a group: by priority, the children that were hit and not yet taken.
+const GROUP_HITS: u32 = 0x0000_00ff;
+/// Bits of a primitive group: one a primitive.
+const PRIMITIVE_HITS: u32 = 0x00ff_ffff;
 
 /// Whether a hit at `t` replaces `hit`: it is nearer, or as near and lower in (instance, primitive), so that the order
 /// of the walk does not matter.
@@ -63,13 +63,18 @@ fn highest_bit(x: u32) -> u32 {
     31 - x.leading_zeros()
 }
 
-/// Takes the nearest child out of a group: its index in the node array.
+/// The group of a root alone: its priority is 7, and so its place.
 #[inline(always)]
-fn take_child(group: &mut UVec2, octant: u32) -> u32 {
-    let bit = highest_bit(group.y >> 24);
-    group.y &= !(0x0100_0000 << bit);
-    let slot = bit ^ (octant & 255);
-    group.x + (group.y & !(0xffff_ffff << slot)).count_ones()
+fn root_group(octant: u32) -> u32 {
+    ((octant & 7) << 8) | 0x80
+}
+
+/// Takes the nearest child out of a group: its index in the node array, less that of the root, plus 7.
+#[inline(always)]
+fn take_child(group: &mut u32, octant: u32) -> u32 {
+    let bit = highest_bit(*group & GROUP_HITS);
+    *group &= !(1 << bit);
+    (*group >> 8) + (bit ^ (octant & 7))
 }
 
 /// Takes one primitive out of a primitive group: its index in its array.
@@ -129,21 +134,21 @@ fn walk_mesh(
 ) {
     let mut stack = Stack::new();
     let widening = approx_widening(&scene.nodes[root as usize], level, MESH_MARGIN);
-    let mut group = UVec2::new(root, GROUP_ROOT);
+    let mut group = root_group(level.octant);
     let mut walking = true;
     while walking {
-        let index = take_child(&mut group, level.octant);
-        if group.y > GROUP_EMPTY {
+        let index = root.wrapping_sub(7).wrapping_add(take_child(&mut group, level.octant));
+        if group & GROUP_HITS != 0 {
             stack.push(group, deepest);
         }
         let node = &scene.nodes[index as usize];
         let hits = approx_intersect_node(eight, node, level, widening, hit.t);
-        group = UVec2::new(node.child_base, (hits & 0xff00_0000) | (node.exponents_imask >> 24));
-        let mut triangles = UVec2::new(node.primitive_base, hits & GROUP_EMPTY);
+        group = node.children | (hits >> 24);
+        let mut triangles = UVec2::new(node.primitive_base, hits & PRIMITIVE_HITS);
         while triangles.y != 0 && !(any && hit.instance != INVALID) {
             test_triangle(scene, ray, level, instance, take_primitive(&mut triangles), hit);
         }
-        if group.y <= GROUP_EMPTY {
+        if group & GROUP_HITS == 0 {
             match stack.pop() {
                 Some(next) => group = next,
                 None => walking = false,
@@ -169,31 +174,31 @@ fn traverse(eight: impl Eight, scene: &SceneView, ray: &Ray, any: bool, casting:
     let mut stack = Stack::new();
     let world = prepare_ray(ray.origin, ray.direction);
     let widening = approx_widening(&scene.nodes[scene.header.top_root as usize], &world, scene.header.top_margin);
-    let mut group = UVec2::new(scene.header.top_root, GROUP_ROOT);
+    let mut group = root_group(world.octant);
     let mut instances = UVec2::ZERO;
     let mut walking = true;
     while walking {
         // Nodes until there is an instance.
-        while instances.y == 0 && (group.y > GROUP_EMPTY || stack.len > 0) {
-            if group.y <= GROUP_EMPTY
+        while instances.y == 0 && (group & GROUP_HITS != 0 || stack.len > 0) {
+            if group & GROUP_HITS == 0
                 && let Some(next) = stack.pop()
             {
                 group = next;
             }
-            let index = take_child(&mut group, world.octant);
-            if group.y > GROUP_EMPTY {
+            let index = scene.header.top_root.wrapping_sub(7).wrapping_add(take_child(&mut group, world.octant));
+            if group & GROUP_HITS != 0 {
                 stack.push(group, deepest);
             }
             let node = &scene.nodes[index as usize];
             let hits = approx_intersect_node(eight, node, &world, widening, hit.t);
-            group = UVec2::new(node.child_base, (hits & 0xff00_0000) | (node.exponents_imask >> 24));
-            instances = UVec2::new(node.primitive_base, hits & GROUP_EMPTY);
+            group = node.children | (hits >> 24);
+            instances = UVec2::new(node.primitive_base, hits & PRIMITIVE_HITS);
         }
 
         if instances.y != 0 {
             enter_instance(eight, scene, ray, take_primitive(&mut instances), any, casting, &mut hit, deepest);
         }
-        walking = (instances.y != 0 || group.y > GROUP_EMPTY || stack.len > 0) && !(any && hit.instance != INVALID);
+        walking = (instances.y != 0 || group & GROUP_HITS != 0 || stack.len > 0) && !(any && hit.instance != INVALID);
     }
     hit
 }

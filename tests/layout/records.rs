@@ -88,7 +88,7 @@ macro_rules! records {
 
 records! {
     Node {
-        origin, exponents_imask, child_base, primitive_base, child_meta, min_x, max_x, min_y, max_y, min_z, max_z,
+        origin, exponents_imask, children, primitive_base, child_meta, min_x, max_x, min_y, max_y, min_z, max_z,
     }
     Triangle { v0, primitive, v1, _pad0, v2, _pad1 }
     Instance { to_world, to_object, kind, root, first_face, material, flags, object, light_density, _pad0 }
