@@ -16,7 +16,8 @@ use through::THROUGH;
 const TWINS: [&str; 4] = ["layout", "shading", "trace", "transport"];
 
 /// Functions whose twins differ or that have none: (folder and stem, function, why).
-const ALONE: [(&str, &str, &str); 6] = [
+const ALONE: [(&str, &str, &str); 7] = [
+    ("trace/ray", "lanes", "a register of the host"),
     ("shading/math", "rcp_each", "the host computes three at a time"),
     ("trace/traverse", "enter_instance", "`deepest` measures the stack, on the host only"),
     ("trace/traverse", "stack_used", "measures the stack for tests of bake's bound"),

@@ -8,7 +8,7 @@ use gonio::bake::bake;
 use gonio::layout::*;
 use gonio::scene::{Geometry, Mesh, Scene, Transform};
 #[cfg(target_arch = "x86_64")]
-use gonio::trace::box_::{MESH_MARGIN, Portable, approx_intersect_node, approx_widening};
+use gonio::trace::box_::{NODE_SLACKS, Portable, SLACK, approx_intersect_node, axis_slack, root_reach};
 use gonio::trace::ray::{object_origin, prepare_ray, transform_vector, within_reach};
 use gonio::trace::sphere::intersect_sphere;
 use gonio::trace::traverse::{stack_used, trace_any, trace_closest};
@@ -38,13 +38,14 @@ fn brute_force(scene: &SceneView, ray: &Ray, shadow: bool) -> Hit {
             consider(intersect_sphere(&level, !leaves, !leaves || ray.skip_inward != 0), 0.0, 0.0, id, 0);
             continue;
         }
+        let slack = axis_slack(&level, root_reach(&scene.nodes[instance.root as usize], &level) * SLACK);
         for primitive in 0..faces_of(scene, &instance) {
             if id == ray.skip_instance && primitive == ray.skip_primitive {
                 continue;
             }
             let face = load_face(scene, instance.first_face + primitive);
             let [v0, v1, v2] = [face.i0, face.i1, face.i2].map(|i| load_vertex(scene, i).position);
-            let found = intersect_triangle(&level, &v0, &v1, &v2);
+            let found = intersect_triangle(&level, slack, &v0, &v1, &v2);
             consider(found.x, found.y, found.z, id, primitive);
         }
     }
@@ -95,7 +96,7 @@ fn wide_registers_visit_what_narrow_ones_do() {
         let ray = random.ray(2.0);
         let level = prepare_ray(ray.origin, ray.direction);
         for node in &data.nodes {
-            let widening = approx_widening(node, &level, MESH_MARGIN);
+            let widening = axis_slack(&level, root_reach(node, &level) * SLACK) * NODE_SLACKS;
             let [wide, narrow] = [
                 approx_intersect_node(wide, node, &level, widening, ray.t_max),
                 approx_intersect_node(Portable, node, &level, widening, ray.t_max),

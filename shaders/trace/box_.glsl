@@ -3,31 +3,33 @@
 // The picture must not depend on the shape of the hierarchy, so boxes choose what is visited, never what is hit:
 //
 // * `box_interval` is strict. A primitive's hit counts only at a t inside the interval of the primitive's own box
-//   (grown by `slack`, below), which holds for every honest hit and forbids those that rounding invents far from a
+//   (grown by the slack below), which holds for every honest hit and forbids those that rounding invents far from a
 //   triangle seen edge-on.
 // * `approx_intersect_node` may round differently on every device, so its boxes are widened by more than all the
 //   rounding between the two. Whatever is accepted lies in a box that is visited.
 //
 // # The bound
 //
-// u = 2^-24; d the direction; o the origin; for a box, m = max |corner - o| per axis; S = |d| / |d.kz| <= 1.
+// u = 2^-24; d the direction; o the origin; R = `root_reach`: max over axes of |p - o| + 255 step at the root of the mesh
+// (for a sphere: max |o| + 1), so that no point of the mesh is farther from the origin, on any axis; S = |d| / |d.kz| <= 1.
 //
-// 1. Triangle. A corner's sheared coordinate is fl(fl(v - o) - fl(S fl(v - o).kz)): off by at most u (2 S m.kz + m).
+// 1. Triangle. A corner's sheared coordinate is fl(fl(v - o) - fl(S fl(v - o).kz)): off by at most 3 u R.
 //    The sign of an edge function is never wrong, because rounding is monotone (it may become 0), so the triangle
 //    that contains the ray in computed coordinates is accepted. Its point above the ray is the corners' weighted mean:
 //    inside the box, and off the ray per axis by that error. S is fl(d rcp(d.kz)) and the slabs use rcp(d), each
-//    within 2.3 u: 3.3 u S m.kz more; the slab's subtraction and product: 2 u m. Sum: u (5.3 S m.kz + 3 m).
-// 2. Sphere. The closest point to the centre is off by u (m + 16 S m.kz) (`sphere`).
-// 3. So slack = 16 u (m + S m.kz) covers both.
-// 4. Node, same level. Its planes contain the box (bake proves it in f64). With R = max over axes of |p - o| + 255 step at
-//    the root, every box has m <= R and every node |p - o| <= R and 255 step <= 2 R, since a grid is less than twice as
-//    large as its box. So slack is at most 32 u R, its rounding and the slab's 4 u R, the node's own (two differences, two
-//    products, one sum) 6 u 3 R: 54 u R; 64 u R = 2^-18 R is enough: `MESH_MARGIN`. With R instead of each node's own
-//    distance it costs nothing a node, and at 4 million triangles no more than 1 % of the visits, 5 % of the tests.
+//    within 2.3 u: 3.3 u R more; the slab's subtraction and product: 2 u R; the mean and its t: 5 u R. Sum: 13.3 u R.
+// 2. Sphere. The closest point to the centre is off by 17 u R (`sphere`); with the slabs 22 u R.
+// 3. So a slack of 16 u R covers a triangle, twice that a sphere. With R instead of each triangle's own distance it is
+//    the same for all of a mesh.
+// 4. Node, same level. Its planes contain the box (bake proves it in f64), and every node has |p - o| <= R and
+//    255 step <= 2 R, since a grid is less than twice as large as its box. To the slack of 16 u R comes the rounding of
+//    the slabs, 4 u R, and the node's own (two differences, two products, one sum), 6 u 3 R: 38 u R. Three slacks, 48 u R,
+//    are enough: `NODE_SLACKS`.
 // 5. Node of the top level. An object-space hit is off in object space by the transform's rounding,
-//    8 u (|O||o| + |O.w|) for the origin and direction and 8 u |O||x - o| for to_object being rounded itself, and by slack
-//    in object space, 16 u (2 |O||x - o| + extents). In world units, with kappa = the largest row sum of |W||O|:
-//    relative 48 kappa u R + 18 u R, so `top_margin` = 128 kappa u; and an absolute part that bake adds to the box.
+//    8 u (|O||o| + |O.w|) for the origin and direction and 8 u |O||x - o| for to_object being rounded itself, and by the
+//    slack in object space, at most 32 u |O||x - o| + 48 u extents, for a sphere 32 u (|O||x - o| + extents). In world
+//    units, with kappa = the largest row sum of |W||O|: relative 48 kappa u R + 22 u R, so `top_margin` = 128 kappa u;
+//    and an absolute part that bake adds to the box.
 #ifndef TRACE_BOX_GLSL
 #define TRACE_BOX_GLSL
 
@@ -35,31 +37,48 @@
 #include "shading/math.glsl"
 #include "trace/ray.glsl"
 
-// 16 u: see the bound, step 3.
+// 16 u: the slack in units of the reach (the bound, step 3).
 const float SLACK = 9.536743e-7;
-// 64 u: see the bound, step 4.
-const float MESH_MARGIN = 3.8146973e-6;
+// 32 u: that of a sphere.
+const float SPHERE_SLACK = 1.9073486e-6;
+// Slacks by which the boxes of a mesh's nodes are wider (the bound, step 4).
+const float NODE_SLACKS = 3.0;
+
+// The sizes of a node's grid steps.
+vec3 node_steps(uint exponents) {
+    return vec3(
+        uintBitsToFloat((exponents & 255u) << 23u),
+        uintBitsToFloat(((exponents >> 8u) & 255u) << 23u),
+        uintBitsToFloat(((exponents >> 16u) & 255u) << 23u)
+    );
+}
+
+// How far from the ray's origin something below `root` is at most, on any axis: the bound's R.
+float root_reach(Node root, LevelRay ray) {
+    vec3 size = node_steps(root.exponents_imask) * 255.0;
+    float x = abs(root.origin.x - ray.origin.x) + size.x;
+    float y = abs(root.origin.y - ray.origin.y) + size.y;
+    float z = abs(root.origin.z - ray.origin.z) + size.z;
+    return max_(max_(x, y), z);
+}
+
+// An extent along each axis in units of t: by how much sooner and later a ray is in a box grown by it.
+vec3 axis_slack(LevelRay ray, float extent) {
+    return abs(ray.inverse) * extent;
+}
 
 // The t at which the ray enters and leaves a box, in (near, far) order; near > far: it does not meet it.
-// `low`, `high`: corners minus the ray's origin. The box is grown by `SLACK` first.
-vec2 box_interval(LevelRay ray, vec3 low, vec3 high) {
-    float mx = max_(abs(low.x), abs(high.x));
-    float my = max_(abs(low.y), abs(high.y));
-    float mz = max_(abs(low.z), abs(high.z));
-    float depth = ray.kz == 0u ? mx : (ray.kz == 1u ? my : mz);
-    float travel = depth * abs(ray.sz);
-    float ex = (mx + abs(ray.direction.x) * travel) * SLACK;
-    float ey = (my + abs(ray.direction.y) * travel) * SLACK;
-    float ez = (mz + abs(ray.direction.z) * travel) * SLACK;
-    float x0 = (low.x - ex) * ray.inverse.x;
-    float x1 = (high.x + ex) * ray.inverse.x;
-    float y0 = (low.y - ey) * ray.inverse.y;
-    float y1 = (high.y + ey) * ray.inverse.y;
-    float z0 = (low.z - ez) * ray.inverse.z;
-    float z1 = (high.z + ez) * ray.inverse.z;
-    float near = max_(max_(min_(x0, x1), min_(y0, y1)), min_(z0, z1));
-    float far = min_(min_(max_(x0, x1), max_(y0, y1)), max_(z0, z1));
-    return vec2(near, far);
+// `low`, `high`: corners minus the ray's origin, finite. `slack`: `axis_slack` of what the box is grown by.
+vec2 box_interval(LevelRay ray, vec3 slack, vec3 low, vec3 high) {
+    vec3 t0 = low * ray.inverse;
+    vec3 t1 = high * ray.inverse;
+    float near_x = min_(t0.x, t1.x) - slack.x;
+    float near_y = min_(t0.y, t1.y) - slack.y;
+    float near_z = min_(t0.z, t1.z) - slack.z;
+    float far_x = max_(t0.x, t1.x) + slack.x;
+    float far_y = max_(t0.y, t1.y) + slack.y;
+    float far_z = max_(t0.z, t1.z) + slack.z;
+    return vec2(max_(max_(near_x, near_y), near_z), min_(min_(far_x, far_y), far_z));
 }
 
 // Four quantised planes of one word, child 0 in the lowest byte. By way of signed integers: many devices have no
@@ -102,24 +121,8 @@ uint approx_hit_bits(uint meta, uint octant, vec4 near, vec4 far) {
     return hits;
 }
 
-// The sizes of a node's grid steps.
-vec3 node_steps(uint exponents) {
-    return vec3(
-        uintBitsToFloat((exponents & 255u) << 23u),
-        uintBitsToFloat(((exponents >> 8u) & 255u) << 23u),
-        uintBitsToFloat(((exponents >> 16u) & 255u) << 23u)
-    );
-}
-
-// How much sooner and later, in t on each axis, the ray may be in a box below `root`: what its planes are moved by.
-// `margin`: `MESH_MARGIN` or the header's `top_margin`.
-vec3 approx_widening(Node root, LevelRay ray, float margin) {
-    vec3 reach = abs(root.origin - ray.origin) + node_steps(root.exponents_imask) * 255.0;
-    return abs(ray.inverse) * (max_(max_(reach.x, reach.y), reach.z) * margin);
-}
-
 // Which of a node's eight children the ray may meet at a t from 0 to `t_max` (both included), as the bits of
-// `approx_hit_bits`. `widening`: `approx_widening` of the root.
+// `approx_hit_bits`. `widening`: the `axis_slack` by which boxes are wider.
 // Source: Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
 // section 3; the widening is ours (the bound above).
 uint approx_intersect_node(Node node, LevelRay ray, vec3 widening, float t_max) {

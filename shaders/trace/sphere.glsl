@@ -33,7 +33,9 @@ float intersect_sphere(LevelRay ray, bool near_counts, bool far_counts) {
     float t1 = q * scale;
     float near = b < 0.0 ? t1 : t0;
     float far = b < 0.0 ? t0 : t1;
-    vec2 interval = box_interval(ray, vec3(-1.0) - o, vec3(1.0) - o);
+    float reach = max_(max_(abs(o.x), abs(o.y)), abs(o.z)) + 1.0;
+    vec3 slack = axis_slack(ray, reach * SPHERE_SLACK);
+    vec2 interval = box_interval(ray, slack, vec3(-1.0) - o, vec3(1.0) - o);
     if (interval.x > interval.y) {
         return -1.0;
     }

@@ -1,9 +1,11 @@
 // The walk through the two-level hierarchy.
 //
 // Ylitie, Karras and Laine 2017, algorithm 1, with up to three groups of triangles postponed (Aila and Laine 2009,
-// "Understanding the Efficiency of Ray Traversal on GPUs", section 4): a *group* is (first inner child, hit bits of
-// the children in the top byte | mask of inner children in the lowest byte), a *primitive group* is (first primitive, one
-// bit a primitive). What is not taken yet waits on a stack. Each turn takes one node or one primitive off, so the loops end.
+// "Understanding the Efficiency of Ray Traversal on GPUs", section 4): a *group* is where a node's inner children stand
+// (`Node.children`) and in its lowest byte which of them were hit, a *primitive group* is (first primitive, one bit a
+// primitive). What is not taken yet waits on a stack. Each turn takes one node or one primitive off, so the loops end.
+// A child stands at the place of its slot, so that a group is one word: devices that walk lanes in lockstep store and load
+// what waits lane by lane.
 //
 // Loops inside one another, and not one loop with branches for both levels: devices that walk lanes in lockstep run every
 // branch of a loop's body on each turn, whether a lane takes it or not, so what is rare has a loop of its own. Each ends by
@@ -61,13 +63,13 @@ uint take_primitive(inout uvec2 group) {
     return group.x + bit;
 }
 
-// Tests triangle `index` of the array; `hit` becomes the closer of both.
-void test_triangle(Ray ray, LevelRay level, uint instance, uint index, inout Hit hit) {
+// Tests triangle `index` of the array; `hit` becomes the closer of both. `slack`: of its mesh.
+void test_triangle(Ray ray, LevelRay level, vec3 slack, uint instance, uint index, inout Hit hit) {
     Triangle triangle = load_triangle(index);
     if (instance == ray.skip_instance && triangle.primitive == ray.skip_primitive) {
         return;
     }
-    vec3 found = intersect_triangle(level, triangle.v0, triangle.v1, triangle.v2);
+    vec3 found = intersect_triangle(level, slack, triangle.v0, triangle.v1, triangle.v2);
     if (found.x > 0.0 && is_closer(found.x, instance, triangle.primitive, hit)) {
         hit.t = found.x;
         hit.b1 = found.y;
@@ -95,7 +97,8 @@ void test_sphere(Ray ray, LevelRay level, uint instance, inout Hit hit) {
 void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inout Hit hit) {
     uint stack[STACK_DEPTH + 1u];
     uint height = 0u;
-    vec3 widening = approx_widening(load_node(root), level, MESH_MARGIN);
+    vec3 slack = axis_slack(level, root_reach(load_node(root), level) * SLACK);
+    vec3 widening = slack * NODE_SLACKS;
     uint group = root_group(level.octant);
     // What waits to be tested, the last found first. Lanes wait for one another at the end of either loop; what each
     // may put aside evens out what they wait for.
@@ -130,7 +133,7 @@ void walk_mesh(Ray ray, LevelRay level, uint instance, uint root, bool any, inou
         }
         for (uint step_ = 0u; step_ < TURNS_MOST; step_++) {
             if (triangles.y != 0u) {
-                test_triangle(ray, level, instance, take_primitive(triangles), hit);
+                test_triangle(ray, level, slack, instance, take_primitive(triangles), hit);
                 if (triangles.y == 0u) {
                     triangles = triangles1;
                     triangles1 = triangles2;
@@ -177,7 +180,7 @@ Hit traverse(Ray ray, bool any, bool casting) {
     uint stack[STACK_DEPTH];
     uint height = 0u;
     LevelRay world = prepare_ray(ray.origin, ray.direction);
-    vec3 widening = approx_widening(load_node(header.top_root), world, header.top_margin);
+    vec3 widening = axis_slack(world, root_reach(load_node(header.top_root), world) * header.top_margin);
     uint group = root_group(world.octant);
     uvec2 instances = uvec2(0u);
     for (uint turn = 0u; turn < TURNS_MOST; turn++) {

@@ -18,12 +18,13 @@ float signed_area(float px, float py, float qx, float qy) {
 }
 
 // Where the ray meets the triangle `v0`, `v1`, `v2` (same space as the ray): (t, b1, b2) with the weights of corners
-// 1 and 2 in 0..1 and t > 0 in units of the ray's direction; t = -1 for a miss. Both sides count. An edge value of 0 is
+// 1 and 2 in 0..1 and t > 0 in units of the ray's direction; t = -1 for a miss. `slack`: the `axis_slack` of the mesh
+// (`box_`, the bound, step 3). Both sides count. An edge value of 0 is
 // inside, so a ray through a shared edge or corner hits at least one of the triangles there.
 // Source: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", without the fallback to double
 // precision (single precision never gets a sign wrong, only to 0). t is kept in the interval of the triangle's own
 // box (`box_interval`), where it is except for triangles seen so edge-on that their weights are rounding noise.
-vec3 intersect_triangle(LevelRay ray, vec3 v0, vec3 v1, vec3 v2) {
+vec3 intersect_triangle(LevelRay ray, vec3 slack, vec3 v0, vec3 v1, vec3 v2) {
     vec3 a = v0 - ray.origin;
     vec3 b = v1 - ray.origin;
     vec3 c = v2 - ray.origin;
@@ -63,7 +64,7 @@ vec3 intersect_triangle(LevelRay ray, vec3 v0, vec3 v1, vec3 v2) {
         max_(max_(a.y, b.y), c.y),
         max_(max_(a.z, b.z), c.z)
     );
-    vec2 interval = box_interval(ray, low, high);
+    vec2 interval = box_interval(ray, slack, low, high);
     if (interval.x > interval.y) {
         return TRIANGLE_MISS;
     }

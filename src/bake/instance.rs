@@ -95,11 +95,12 @@ pub fn place(
     } else {
         abs(m) * half
     };
-    // The absolute part of the bound in `trace::box_`, step 5 (its 34 |W| (|O||x| + |O.w| + extents), with room to spare).
+    // The absolute part of the bound in `trace::box_`, step 5: |W| (8 u (|O||x| + |O.w|) + 48 u extents), and extents are at
+    // most twice the size.
     let farthest = middle.abs() + extent;
     let object_size = low.abs().max(high.abs()).max_element();
     let in_object = abs(&inverse.matrix3) * farthest + inverse.translation.abs() + DVec3::splat(object_size);
-    let grown = extent + abs(m) * in_object * (64.0 * U);
+    let grown = extent + abs(m) * in_object * (128.0 * U);
     let (low, high) = (middle - grown, middle + grown);
     Ok(Placement {
         to_world,

@@ -3,33 +3,35 @@
 //! The picture must not depend on the shape of the hierarchy, so boxes choose what is visited, never what is hit:
 //!
 //! * `box_interval` is strict. A primitive's hit counts only at a t inside the interval of the primitive's own box
-//!   (grown by `slack`, below), which holds for every honest hit and forbids those that rounding invents far from a
+//!   (grown by the slack below), which holds for every honest hit and forbids those that rounding invents far from a
 //!   triangle seen edge-on.
 //! * `approx_intersect_node` may round differently on every device, so its boxes are widened by more than all the
 //!   rounding between the two. Whatever is accepted lies in a box that is visited.
 //!
 //! # The bound
 //!
-//! u = 2^-24; d the direction; o the origin; for a box, m = max |corner - o| per axis; S = |d| / |d.kz| <= 1.
+//! u = 2^-24; d the direction; o the origin; R = `root_reach`: max over axes of |p - o| + 255 step at the root of the mesh
+//! (for a sphere: max |o| + 1), so that no point of the mesh is farther from the origin, on any axis; S = |d| / |d.kz| <= 1.
 //!
-//! 1. Triangle. A corner's sheared coordinate is fl(fl(v - o) - fl(S fl(v - o).kz)): off by at most u (2 S m.kz + m).
+//! 1. Triangle. A corner's sheared coordinate is fl(fl(v - o) - fl(S fl(v - o).kz)): off by at most 3 u R.
 //!    The sign of an edge function is never wrong, because rounding is monotone (it may become 0), so the triangle
 //!    that contains the ray in computed coordinates is accepted. Its point above the ray is the corners' weighted mean:
 //!    inside the box, and off the ray per axis by that error. S is fl(d rcp(d.kz)) and the slabs use rcp(d), each
-//!    within 2.3 u: 3.3 u S m.kz more; the slab's subtraction and product: 2 u m. Sum: u (5.3 S m.kz + 3 m).
-//! 2. Sphere. The closest point to the centre is off by u (m + 16 S m.kz) (`sphere`).
-//! 3. So slack = 16 u (m + S m.kz) covers both.
-//! 4. Node, same level. Its planes contain the box (bake proves it in f64). With R = max over axes of |p - o| + 255 step at
-//!    the root, every box has m <= R and every node |p - o| <= R and 255 step <= 2 R, since a grid is less than twice as
-//!    large as its box. So slack is at most 32 u R, its rounding and the slab's 4 u R, the node's own (two differences, two
-//!    products, one sum) 6 u 3 R: 54 u R; 64 u R = 2^-18 R is enough: `MESH_MARGIN`. With R instead of each node's own
-//!    distance it costs nothing a node, and at 4 million triangles no more than 1 % of the visits, 5 % of the tests.
+//!    within 2.3 u: 3.3 u R more; the slab's subtraction and product: 2 u R; the mean and its t: 5 u R. Sum: 13.3 u R.
+//! 2. Sphere. The closest point to the centre is off by 17 u R (`sphere`); with the slabs 22 u R.
+//! 3. So a slack of 16 u R covers a triangle, twice that a sphere. With R instead of each triangle's own distance it is
+//!    the same for all of a mesh.
+//! 4. Node, same level. Its planes contain the box (bake proves it in f64), and every node has |p - o| <= R and
+//!    255 step <= 2 R, since a grid is less than twice as large as its box. To the slack of 16 u R comes the rounding of
+//!    the slabs, 4 u R, and the node's own (two differences, two products, one sum), 6 u 3 R: 38 u R. Three slacks, 48 u R,
+//!    are enough: `NODE_SLACKS`.
 //! 5. Node of the top level. An object-space hit is off in object space by the transform's rounding,
-//!    8 u (|O||o| + |O.w|) for the origin and direction and 8 u |O||x - o| for to_object being rounded itself, and by slack
-//!    in object space, 16 u (2 |O||x - o| + extents). In world units, with kappa = the largest row sum of |W||O|:
-//!    relative 48 kappa u R + 18 u R, so `top_margin` = 128 kappa u; and an absolute part that bake adds to the box.
+//!    8 u (|O||o| + |O.w|) for the origin and direction and 8 u |O||x - o| for to_object being rounded itself, and by the
+//!    slack in object space, at most 32 u |O||x - o| + 48 u extents, for a sphere 32 u (|O||x - o| + extents). In world
+//!    units, with kappa = the largest row sum of |W||O|: relative 48 kappa u R + 22 u R, so `top_margin` = 128 kappa u;
+//!    and an absolute part that bake adds to the box.
 
-use super::ray::LevelRay;
+use super::ray::{LevelRay, lanes};
 use crate::layout::Node;
 use crate::shading::math::{max_, min_};
 use glam::{Vec2, Vec3};
@@ -39,38 +41,50 @@ use pulp::x86::V3;
 use std::arch::x86_64::_CMP_NGT_UQ;
 use wide::{f32x4, f32x8, i16x8, i32x8, u8x16};
 
-/// 16 u: see the bound, step 3.
-const SLACK: f32 = 9.536743e-7;
-/// 64 u: see the bound, step 4.
-pub const MESH_MARGIN: f32 = 3.8146973e-6;
+/// 16 u: the slack in units of the reach (the bound, step 3).
+pub const SLACK: f32 = 9.536743e-7;
+/// 32 u: that of a sphere.
+pub const SPHERE_SLACK: f32 = 1.9073486e-6;
+/// Slacks by which the boxes of a mesh's nodes are wider (the bound, step 4).
+pub const NODE_SLACKS: f32 = 3.0;
+
+/// The sizes of a node's grid steps.
+#[inline(always)]
+fn node_steps(exponents: u32) -> Vec3 {
+    Vec3::new(
+        f32::from_bits((exponents & 255) << 23),
+        f32::from_bits(((exponents >> 8) & 255) << 23),
+        f32::from_bits(((exponents >> 16) & 255) << 23),
+    )
+}
+
+/// How far from the ray's origin something below `root` is at most, on any axis: the bound's R.
+#[inline(always)]
+pub fn root_reach(root: &Node, ray: &LevelRay) -> f32 {
+    let size = node_steps(root.exponents_imask) * 255.0;
+    let x = (root.origin.x - ray.origin.x).abs() + size.x;
+    let y = (root.origin.y - ray.origin.y).abs() + size.y;
+    let z = (root.origin.z - ray.origin.z).abs() + size.z;
+    max_(max_(x, y), z)
+}
+
+/// An extent along each axis in units of t: by how much sooner and later a ray is in a box grown by it.
+#[inline(always)]
+pub fn axis_slack(ray: &LevelRay, extent: f32) -> Vec3 {
+    ray.inverse.abs() * extent
+}
 
 /// The t at which the ray enters and leaves a box, in (near, far) order; near > far: it does not meet it.
-/// `low`, `high`: corners minus the ray's origin. The box is grown by `SLACK` first.
+/// `low`, `high`: corners minus the ray's origin, finite. `slack`: `axis_slack` of what the box is grown by.
 #[inline(always)]
-pub fn box_interval(ray: &LevelRay, low: Vec3, high: Vec3) -> Vec2 {
-    let mx = max_(low.x.abs(), high.x.abs());
-    let my = max_(low.y.abs(), high.y.abs());
-    let mz = max_(low.z.abs(), high.z.abs());
-    let depth = if ray.kz == 0 {
-        mx
-    } else if ray.kz == 1 {
-        my
-    } else {
-        mz
-    };
-    let travel = depth * ray.sz.abs();
-    let ex = (mx + ray.direction.x.abs() * travel) * SLACK;
-    let ey = (my + ray.direction.y.abs() * travel) * SLACK;
-    let ez = (mz + ray.direction.z.abs() * travel) * SLACK;
-    let x0 = (low.x - ex) * ray.inverse.x;
-    let x1 = (high.x + ex) * ray.inverse.x;
-    let y0 = (low.y - ey) * ray.inverse.y;
-    let y1 = (high.y + ey) * ray.inverse.y;
-    let z0 = (low.z - ez) * ray.inverse.z;
-    let z1 = (high.z + ez) * ray.inverse.z;
-    let near = max_(max_(min_(x0, x1), min_(y0, y1)), min_(z0, z1));
-    let far = min_(min_(max_(x0, x1), max_(y0, y1)), max_(z0, z1));
-    Vec2::new(near, far)
+pub fn box_interval(ray: &LevelRay, slack: Vec3, low: f32x4, high: f32x4) -> Vec2 {
+    // All axes at a time. A minimum of zeros of both signs may have either, but the slack makes it something else.
+    let inverse = lanes(ray.inverse);
+    let t0 = low * inverse;
+    let t1 = high * inverse;
+    let [near_x, near_y, near_z, _] = (t0.fast_min(t1) - lanes(slack)).to_array();
+    let [far_x, far_y, far_z, _] = (t0.fast_max(t1) + lanes(slack)).to_array();
+    Vec2::new(max_(max_(near_x, near_y), near_z), min_(min_(far_x, far_y), far_z))
 }
 
 /// For each octant and set of inner children, by slot, the same set by priority: slot xor octant (Ylitie et al. 2017,
@@ -172,34 +186,15 @@ impl Eight for V3 {
     }
 }
 
-/// The sizes of a node's grid steps.
-#[inline(always)]
-fn node_steps(exponents: u32) -> Vec3 {
-    Vec3::new(
-        f32::from_bits((exponents & 255) << 23),
-        f32::from_bits(((exponents >> 8) & 255) << 23),
-        f32::from_bits(((exponents >> 16) & 255) << 23),
-    )
-}
-
-/// How much sooner and later, in t on each axis, the ray may be in a box below `root`: what its planes are moved by.
-/// `margin`: `MESH_MARGIN` or the header's `top_margin`.
-#[inline(always)]
-#[allow(clippy::disallowed_methods, reason = "it chooses what to visit, never what is hit")]
-pub fn approx_widening(root: &Node, ray: &LevelRay, margin: f32) -> Vec3 {
-    let reach = (root.origin - ray.origin).abs() + node_steps(root.exponents_imask) * 255.0;
-    ray.inverse.abs() * (max_(max_(reach.x, reach.y), reach.z) * margin)
-}
-
 /// Which of a node's eight children the ray may meet at a t from 0 to `t_max` (both included), as bits that they set: inner
 /// children that of their priority in the top byte (Ylitie et al. 2017, section 3.3: slot xor octant), leaves one bit a
-/// primitive in the lower 24. `widening`: `approx_widening` of the root. All eight at a time here.
+/// primitive in the lower 24. `widening`: the `axis_slack` by which boxes
+/// are wider. All eight at a time here.
 /// Source: Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
 /// section 3; the widening is ours (the bound above).
 #[inline(always)]
 #[allow(clippy::disallowed_methods, reason = "it chooses what to visit, never what is hit")]
 pub fn approx_intersect_node(eight: impl Eight, node: &Node, ray: &LevelRay, widening: Vec3, t_max: f32) -> u32 {
-    let lanes = |v: Vec3| f32x4::new([v.x, v.y, v.z, 0.0]);
     // The corner and, in the fourth lane, which nothing reads, whatever comes.
     let [x, y, z, exponents, ..] = *bytemuck::cast_ref::<Node, [f32; 20]>(node);
     let corner = f32x4::new([x, y, z, exponents]) - lanes(ray.origin);

@@ -3,6 +3,7 @@
 use crate::layout::Instance;
 use crate::shading::math::{max_, rcp_each};
 use glam::{Vec3, Vec4};
+use wide::f32x4;
 
 /// Components of a direction smaller than this part of the largest one (2^-40) become 0, and their reciprocals that of
 /// this part: no plane distance overflows, and the direction changes by far less than its own rounding.
@@ -33,6 +34,12 @@ pub struct LevelRay {
     pub permuted_origin: Vec3,
     /// In each of four bytes, bits 4, 2, 1: the x, y, z of `inverse` is not negative.
     pub octant: u32,
+}
+
+/// `v` in a register of four lanes, of which the last is for nothing. Rust only.
+#[inline(always)]
+pub fn lanes(v: Vec3) -> f32x4 {
+    f32x4::new([v.x, v.y, v.z, 0.0])
 }
 
 /// Component `k` (0 to 2) of `v`.

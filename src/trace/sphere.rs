@@ -1,8 +1,8 @@
 //! The analytic unit sphere.
 
-use super::box_::box_interval;
-use super::ray::LevelRay;
-use crate::shading::math::{clamp_, dot3, rcp, sqrt_};
+use super::box_::{SPHERE_SLACK, axis_slack, box_interval};
+use super::ray::{LevelRay, lanes};
+use crate::shading::math::{clamp_, dot3, max_, rcp, sqrt_};
 use glam::Vec3;
 
 /// Where the ray meets the unit sphere at the origin of its space: the smallest t > 0 among the roots that count, in
@@ -33,7 +33,9 @@ pub fn intersect_sphere(ray: &LevelRay, near_counts: bool, far_counts: bool) -> 
     let t1 = q * scale;
     let near = if b < 0.0 { t1 } else { t0 };
     let far = if b < 0.0 { t0 } else { t1 };
-    let interval = box_interval(ray, -Vec3::ONE - o, Vec3::ONE - o);
+    let reach = max_(max_(o.x.abs(), o.y.abs()), o.z.abs()) + 1.0;
+    let slack = axis_slack(ray, reach * SPHERE_SLACK);
+    let interval = box_interval(ray, slack, lanes(-Vec3::ONE - o), lanes(Vec3::ONE - o));
     if interval.x > interval.y {
         return -1.0;
     }

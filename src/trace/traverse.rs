@@ -1,19 +1,21 @@
 //! The walk through the two-level hierarchy.
 //!
-//! Ylitie, Karras and Laine 2017, algorithm 1, without triangle postponing: a *group* is (first inner child, hit bits of
-//! the children in the top byte | mask of inner children in the lowest byte), a *primitive group* is (first primitive, one
-//! bit a primitive). What is not taken yet waits on a stack. Each turn takes one node or one primitive off, so the loops end.
+//! Ylitie, Karras and Laine 2017, algorithm 1, without triangle postponing: a *group* is where a node's inner children stand
+//! (`Node::children`) and in its lowest byte which of them were hit, a *primitive group* is (first primitive, one bit a
+//! primitive). What is not taken yet waits on a stack. Each turn takes one node or one primitive off, so the loops end.
+//! A child stands at the place of its slot, so that a group is one word: devices that walk lanes in lockstep store and load
+//! what waits lane by lane.
 //!
 //! Three loops, one inside another, and not one loop with branches for both levels: devices that walk lanes in lockstep
 //! run every branch of a loop's body on each turn, whether a lane takes it or not, so what is rare has a loop of its own.
 //! They also postpone triangles, which lanes of their own need not: the order of tests cannot change a hit.
 
-use super::box_::{Eight, MESH_MARGIN, Portable, approx_intersect_node, approx_widening};
+use super::box_::{Eight, NODE_SLACKS, Portable, SLACK, approx_intersect_node, axis_slack, root_reach};
 use super::ray::{LevelRay, object_origin, prepare_ray, transform_vector, within_reach};
 use super::sphere::intersect_sphere;
 use super::triangle::intersect_triangle;
 use crate::layout::{Hit, INSTANCE_NO_SHADOW, INVALID, KIND_SPHERE, Ray, STACK_SIZE, SceneView, load_top_instance};
-use glam::UVec2;
+use glam::{UVec2, Vec3};
 use pulp::NullaryFnOnce;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::V3;
@@ -85,14 +87,23 @@ fn take_primitive(group: &mut UVec2) -> u32 {
     group.x + bit
 }
 
-/// Tests triangle `index` of the array; `hit` becomes the closer of both.
+/// Tests triangle `index` of the array; `hit` becomes the closer of both. `slack`: of its mesh.
 #[inline(always)]
-fn test_triangle(scene: &SceneView, ray: &Ray, level: &LevelRay, instance: u32, index: u32, hit: &mut Hit) {
+#[allow(clippy::too_many_arguments, reason = "to read like its twin")]
+fn test_triangle(
+    scene: &SceneView,
+    ray: &Ray,
+    level: &LevelRay,
+    slack: Vec3,
+    instance: u32,
+    index: u32,
+    hit: &mut Hit,
+) {
     let triangle = &scene.triangles[index as usize];
     if instance == ray.skip_instance && triangle.primitive == ray.skip_primitive {
         return;
     }
-    let found = intersect_triangle(level, &triangle.v0, &triangle.v1, &triangle.v2);
+    let found = intersect_triangle(level, slack, &triangle.v0, &triangle.v1, &triangle.v2);
     if found.x > 0.0 && is_closer(found.x, instance, triangle.primitive, hit) {
         hit.t = found.x;
         hit.b1 = found.y;
@@ -133,7 +144,8 @@ fn walk_mesh(
     deepest: &mut u32,
 ) {
     let mut stack = Stack::new();
-    let widening = approx_widening(&scene.nodes[root as usize], level, MESH_MARGIN);
+    let slack = axis_slack(level, root_reach(&scene.nodes[root as usize], level) * SLACK);
+    let widening = slack * NODE_SLACKS;
     let mut group = root_group(level.octant);
     let mut walking = true;
     while walking {
@@ -146,7 +158,7 @@ fn walk_mesh(
         group = node.children | (hits >> 24);
         let mut triangles = UVec2::new(node.primitive_base, hits & PRIMITIVE_HITS);
         while triangles.y != 0 && !(any && hit.instance != INVALID) {
-            test_triangle(scene, ray, level, instance, take_primitive(&mut triangles), hit);
+            test_triangle(scene, ray, level, slack, instance, take_primitive(&mut triangles), hit);
         }
         if group & GROUP_HITS == 0 {
             match stack.pop() {
@@ -173,7 +185,8 @@ fn traverse(eight: impl Eight, scene: &SceneView, ray: &Ray, any: bool, casting:
     }
     let mut stack = Stack::new();
     let world = prepare_ray(ray.origin, ray.direction);
-    let widening = approx_widening(&scene.nodes[scene.header.top_root as usize], &world, scene.header.top_margin);
+    let reach = root_reach(&scene.nodes[scene.header.top_root as usize], &world);
+    let widening = axis_slack(&world, reach * scene.header.top_margin);
     let mut group = root_group(world.octant);
     let mut instances = UVec2::ZERO;
     let mut walking = true;

@@ -1,8 +1,8 @@
 //! The watertight ray-triangle test.
 
 use super::box_::box_interval;
-use super::ray::LevelRay;
-use crate::shading::math::{clamp_, max_, min_, rcp};
+use super::ray::{LevelRay, lanes};
+use crate::shading::math::{clamp_, min_, rcp};
 use glam::Vec3;
 use wide::f32x4;
 
@@ -23,13 +23,14 @@ fn signed_area(x: f32x4, y: f32x4) -> f32x4 {
 }
 
 /// Where the ray meets the triangle `v0`, `v1`, `v2` (same space as the ray): (t, b1, b2) with the weights of corners
-/// 1 and 2 in 0..1 and t > 0 in units of the ray's direction; t = -1 for a miss. Both sides count. An edge value of 0 is
+/// 1 and 2 in 0..1 and t > 0 in units of the ray's direction; t = -1 for a miss. `slack`: the `axis_slack` of the mesh
+/// (`box_`, the bound, step 3). Both sides count. An edge value of 0 is
 /// inside, so a ray through a shared edge or corner hits at least one of the triangles there.
 /// Source: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", without the fallback to double
 /// precision (single precision never gets a sign wrong, only to 0). t is kept in the interval of the triangle's own
 /// box (`box_interval`), where it is except for triangles seen so edge-on that their weights are rounding noise.
 #[inline(always)]
-pub fn intersect_triangle(ray: &LevelRay, v0: &Vec3, v1: &Vec3, v2: &Vec3) -> Vec3 {
+pub fn intersect_triangle(ray: &LevelRay, slack: Vec3, v0: &Vec3, v1: &Vec3, v2: &Vec3) -> Vec3 {
     let corners: [&[f32; 3]; 3] = [v0.as_ref(), v1.as_ref(), v2.as_ref()];
     let along = |k: u32| {
         let k = (k as usize).min(2);
@@ -58,10 +59,11 @@ pub fn intersect_triangle(ray: &LevelRay, v0: &Vec3, v1: &Vec3, v2: &Vec3) -> Ve
     let b1 = min_(v * scale, 1.0);
     let b2 = min_(w * scale, 1.0);
     let [az, bz, cz, _] = z.to_array();
-    let (a, b, c) = (*v0 - ray.origin, *v1 - ray.origin, *v2 - ray.origin);
-    let low = Vec3::new(min_(min_(a.x, b.x), c.x), min_(min_(a.y, b.y), c.y), min_(min_(a.z, b.z), c.z));
-    let high = Vec3::new(max_(max_(a.x, b.x), c.x), max_(max_(a.y, b.y), c.y), max_(max_(a.z, b.z), c.z));
-    let interval = box_interval(ray, low, high);
+    let origin = lanes(ray.origin);
+    let (a, b, c) = (lanes(*v0) - origin, lanes(*v1) - origin, lanes(*v2) - origin);
+    let low = a.fast_min(b).fast_min(c);
+    let high = a.fast_max(b).fast_max(c);
+    let interval = box_interval(ray, slack, low, high);
     if interval.x > interval.y {
         return TRIANGLE_MISS;
     }

@@ -1,7 +1,7 @@
 //! Twins that parity kernels run through others.
 
 /// Twins that no parity kernel calls by name: the function, and the one through which a kernel runs it.
-pub const THROUGH: [(&str, &str); 125] = [
+pub const THROUGH: [(&str, &str); 124] = [
     ("eval_lambert", "eval_material"),
     ("eval_phong", "eval_material"),
     ("eval_blinn_phong", "eval_material"),
@@ -27,7 +27,6 @@ pub const THROUGH: [(&str, &str); 125] = [
     ("on_upper_side", "eval_lambert"),
     ("reflect_local", "refract_local"),
     ("specular_probability", "sample_phong"),
-    ("approx_widening", "approximate: may differ, and tests/trace.rs proves it loses nothing"),
     ("approx_intersect_node", "approximate: may differ, and tests/trace.rs proves it loses nothing"),
     ("albedo_at", "eval_kelemen"),
     ("ashikhmin_falloff", "eval_ashikhmin"),

@@ -40,6 +40,7 @@ void main() {
     vec4 m[3] = vec4[3](argument4(0u), argument4(4u), argument4(8u));
     vec3 p = argument3(12u);
     Instance instance;
+    Node root;
     LevelRay ray = prepare_ray(v, w);
     Ray spawned;
     switch (function) {
@@ -58,8 +59,18 @@ void main() {
         result3(0u, transform_transposed(m, p));
         result3(3u, object_origin(instance, p));
         break;
-    case 6u: result2(0u, box_interval(prepare_ray(vec3(0.0), v), w, argument3(6u))); break;
-    case 7u: result3(0u, intersect_triangle(aimed_ray(v, w, argument3(6u), argument3(9u)), w, argument3(6u), argument3(9u))); break;
+    case 6u:
+        ray = prepare_ray(vec3(0.0), v);
+        root.origin = w;
+        root.exponents_imask = 0x00686868u + (argument_u(10u) & 0x000f0f0fu);
+        result2(0u, box_interval(ray, axis_slack(ray, argument(9u)), w, argument3(6u)));
+        result3(2u, axis_slack(ray, argument(9u)));
+        result(5u, root_reach(root, ray));
+        break;
+    case 7u:
+        ray = aimed_ray(v, w, argument3(6u), argument3(9u));
+        result3(0u, intersect_triangle(ray, axis_slack(ray, SLACK), w, argument3(6u), argument3(9u)));
+        break;
     case 8u:
         ray = prepare_ray(v, w * argument(6u));
         result(0u, intersect_sphere(ray, (argument_u(7u) & 1u) != 0u, (argument_u(7u) & 2u) != 0u));

@@ -3,10 +3,10 @@
 //! Coordinates are normal numbers, as `bake` and `without_dust` leave them: what a device does with subnormals is free.
 
 use super::{Family, In, Out, Twin};
-use crate::layout::{Instance, KIND_MESH, Ray};
-use crate::trace::box_::box_interval;
+use crate::layout::{Instance, KIND_MESH, Node, Ray};
+use crate::trace::box_::{SLACK, axis_slack, box_interval, root_reach};
 use crate::trace::ray::{
-    LevelRay, component, object_origin, prepare_ray, transform_point, transform_transposed, transform_vector,
+    LevelRay, component, lanes, object_origin, prepare_ray, transform_point, transform_transposed, transform_vector,
     within_reach,
 };
 use crate::trace::spawn::{spawn_ray, spawn_through};
@@ -123,10 +123,14 @@ pub const FAMILY: Family = Family {
             },
         },
         Twin {
-            name: "box_interval",
-            domains: &[Direction, PLAIN, PLAIN, PLAIN, PLAIN, PLAIN, PLAIN],
+            name: "box_interval axis_slack root_reach",
+            domains: &[Direction, PLAIN, PLAIN, PLAIN, PLAIN, PLAIN, PLAIN, Exponent(-30, 0), Below(0x0010_0000)],
             run: |i, o| {
-                o.v2(box_interval(&prepare_ray(Vec3::ZERO, i.v3(0)), i.v3(3), i.v3(6)));
+                let ray = prepare_ray(Vec3::ZERO, i.v3(0));
+                let slack = axis_slack(&ray, i.f(9));
+                let root =
+                    Node { origin: i.v3(3), exponents_imask: 0x0068_6868 + (i.u(10) & 0x000f_0f0f), ..Node::default() };
+                o.v2(box_interval(&ray, slack, lanes(i.v3(3)), lanes(i.v3(6)))).v3(slack).f(root_reach(&root, &ray));
             },
         },
         Twin {
@@ -134,7 +138,8 @@ pub const FAMILY: Family = Family {
             domains: &AIMED,
             run: |i, o| {
                 let (v0, v1, v2) = (i.v3(3), i.v3(6), i.v3(9));
-                o.v3(intersect_triangle(&aimed_ray(i, i.v3(0), v0, v1, v2), &v0, &v1, &v2));
+                let ray = aimed_ray(i, i.v3(0), v0, v1, v2);
+                o.v3(intersect_triangle(&ray, axis_slack(&ray, SLACK), &v0, &v1, &v2));
             },
         },
         Twin {
