@@ -11,7 +11,10 @@ void main() {
     uint pixel = gl_GlobalInvocationID.x;
     if (pixel >= batch.pixel_count) return;
     uint index = batch.first_pixel + pixel;
-    FilmSum sum = FilmSum(fetch_film(2u * index), fetch_film(2u * index + 1u));
+    FilmSum sum = FilmSum(uvec4(0u), uvec4(0u));
+    if (batch.is_first == 0u) {
+        sum = FilmSum(fetch_film(2u * index), fetch_film(2u * index + 1u));
+    }
     uint clamped_count = 0u;
     for (uint s = 0u; s < batch.sample_count; s++) {
         uint at = 2u * (pixel * batch.sample_count + s);

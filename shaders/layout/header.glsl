@@ -203,9 +203,10 @@ struct Batch {
     uint first_sample;
     uint sample_count;
     uint slot_count;
+    // 1 if the film holds nothing yet of these pixels.
+    uint is_first;
     uint pad0;
     uint pad1;
-    uint pad2;
 };
 const uint BATCH_WORDS = 3u;
 
@@ -225,9 +226,9 @@ Batch load_batch(uint index) {
     r.sample_count = w1.w;
     uvec4 w2 = fetch_batch(at + 2u);
     r.slot_count = w2.x;
-    r.pad0 = w2.y;
-    r.pad1 = w2.z;
-    r.pad2 = w2.w;
+    r.is_first = w2.y;
+    r.pad0 = w2.z;
+    r.pad1 = w2.w;
     return r;
 }
 #endif

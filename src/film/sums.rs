@@ -5,6 +5,7 @@ use super::display::Display;
 use super::{MAX_SAMPLES, MergeError, Rect, SampleRanges};
 use crate::layout::{AovPixel, FilmSum, INVALID, T_INFINITE};
 use crate::scene::{Integrator, Scene, ToneMap};
+use rayon::prelude::*;
 use std::ops::Range;
 use std::path::Path;
 
@@ -127,6 +128,14 @@ fn add_to(sum: &mut i64, value: i64) {
     *sum = sum.wrapping_add(value);
 }
 
+/// The rows of `rect` in a plane of the crop.
+fn rows<T: Send>(plane: &mut [T], crop: Rect, rect: Rect) -> impl IndexedParallelIterator<Item = &mut [T]> {
+    debug_assert!(crop.contains(&rect), "{rect} is outside the crop {crop}");
+    let (left, top) = ((rect.x - crop.x) as usize, (rect.y - crop.y) as usize);
+    let rows = plane.par_chunks_exact_mut(crop.width as usize).skip(top).take(rect.height as usize);
+    rows.map(move |row| &mut row[left..left + rect.width as usize])
+}
+
 impl Film {
     /// An empty film: no samples.
     pub fn new(spec: FilmSpec) -> Self {
@@ -187,23 +196,24 @@ impl Film {
     /// they are the sums of is said once for the whole crop, by `record`.
     pub fn add_sums(&mut self, rect: Rect, sums: &[FilmSum]) {
         debug_assert_eq!(rect.area(), sums.len(), "{rect}");
-        for (row, sums) in self.rows(rect).zip(sums.chunks_exact(rect.width as usize)) {
-            for (pixel, sum) in self.sums[row].iter_mut().zip(sums) {
+        let rows = rows(&mut self.sums, self.spec.crop, rect);
+        rows.zip(sums.par_chunks_exact(rect.width as usize)).for_each(|(row, sums)| {
+            for (pixel, sum) in row.iter_mut().zip(sums) {
                 for (lane, value) in pixel.iter_mut().zip(sum_lanes(sum)) {
                     add_to(lane, value);
                 }
             }
-        }
+        });
     }
 
     /// Adds auxiliary values to the pixels of `rect`, like `add_sums`; nothing if the film keeps none. Depth, object
     /// and material are taken only if the values are of samples that include sample 0.
     pub fn add_aovs(&mut self, rect: Rect, pixels: &[AovPixel], has_first_sample: bool) {
-        debug_assert_eq!(rect.area(), pixels.len(), "{rect}");
-        let rows = self.rows(rect);
         let Some(aovs) = &mut self.aovs else { return };
-        for (row, pixels) in rows.zip(pixels.chunks_exact(rect.width as usize)) {
-            for (to, from) in aovs[row].iter_mut().zip(pixels) {
+        debug_assert_eq!(rect.area(), pixels.len(), "{rect}");
+        let rows = rows(aovs, self.spec.crop, rect);
+        rows.zip(pixels.par_chunks_exact(rect.width as usize)).for_each(|(row, pixels)| {
+            for (to, from) in row.iter_mut().zip(pixels) {
                 let (normal, albedo) = (sum_lanes(&from.normal), sum_lanes(&from.albedo));
                 for i in 0..3 {
                     to.normal[i] = to.normal[i].saturating_add(normal[i]);
@@ -213,18 +223,7 @@ impl Film {
                     (to.depth, to.object, to.material) = (from.depth, from.object, from.material);
                 }
             }
-        }
-    }
-
-    /// Index ranges of the rows of `rect` in the planes.
-    fn rows(&self, rect: Rect) -> impl Iterator<Item = Range<usize>> + use<> {
-        let crop = self.spec.crop;
-        debug_assert!(crop.contains(&rect), "{rect} is outside the crop {crop}");
-        let first = (rect.x - crop.x) as usize;
-        (rect.y - crop.y..rect.y - crop.y + rect.height).map(move |row| {
-            let start = row as usize * crop.width as usize + first;
-            start..start + rect.width as usize
-        })
+        });
     }
 
     /// Says that every pixel of the crop now holds `samples` (indices below 2^24, none of them recorded before),

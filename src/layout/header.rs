@@ -123,7 +123,8 @@ pub struct Batch {
     pub first_sample: u32,
     pub sample_count: u32,
     pub slot_count: u32,
+    /// 1 if the film holds nothing yet of these pixels.
+    pub is_first: u32,
     pub _pad0: u32,
     pub _pad1: u32,
-    pub _pad2: u32,
 }

@@ -125,7 +125,7 @@ records! {
     }
     Batch {
         crop_x, crop_y, crop_width, crop_height, first_pixel, pixel_count, first_sample, sample_count, slot_count,
-        _pad0, _pad1, _pad2,
+        is_first, _pad0, _pad1,
     }
     FilmSum { low, high }
     AovPixel { normal, albedo, depth, object, material, _pad0 }

@@ -363,12 +363,18 @@ impl Context {
 
     /// Reads `count` records from byte `offset` of a device buffer on.
     pub fn download<T: Pod>(&mut self, from: &Buffer, offset: u64, count: usize) -> Result<Vec<T>, VulkanError> {
-        let staging = self.staging(Place::Readback)?;
         let mut data = bytemuck::zeroed_vec::<T>(count);
+        self.download_into(from, offset, &mut data)?;
+        Ok(data)
+    }
+
+    /// Reads as many records as `data` holds from byte `offset` of a device buffer on.
+    pub fn download_into<T: Pod>(&mut self, from: &Buffer, offset: u64, data: &mut [T]) -> Result<(), VulkanError> {
+        let staging = self.staging(Place::Readback)?;
         let empty = |full: Option<(&mut [u8], &Buffer)>| full.into_iter().for_each(|(part, buffer)| buffer.read(part));
         let mut full = None;
         let mut at = offset;
-        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut data);
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(data);
         for (part, buffer) in bytes.chunks_mut(STAGING as usize).zip(staging.iter().cycle()) {
             let (size, last) = (part.len() as u64, full.take());
             let what = format!("reading {}", from.name());
@@ -377,7 +383,7 @@ impl Context {
             at += size;
         }
         empty(full);
-        Ok(data)
+        Ok(())
     }
 
     /// Runs one kernel of workgroups of 64 over storage buffers at set 0, bindings 0..n, and returns the bytes of

@@ -146,6 +146,7 @@ pub fn batches(band: Rect, samples: Range<u32>, slots: u32) -> impl Iterator<Ite
                 first_sample,
                 sample_count,
                 slot_count: pixel_count * sample_count,
+                is_first: u32::from(first_sample == samples.start),
                 ..Batch::default()
             }
         })
@@ -159,8 +160,10 @@ mod tests {
 
     fn covered(band: Rect, samples: Range<u32>, slots: u32) -> HashSet<(u32, u32)> {
         let mut seen = HashSet::new();
+        let first = samples.start;
         for batch in batches(band, samples, slots) {
             assert!(batch.slot_count <= slots, "{batch:?}");
+            assert_eq!(batch.is_first == 1, batch.first_sample == first, "{batch:?}");
             for slot in 0..batch.slot_count {
                 let pixel = batch.first_pixel + slot / batch.sample_count;
                 let sample = batch.first_sample + slot % batch.sample_count;

@@ -53,6 +53,8 @@ pub struct VulkanRenderer {
     /// Made for the first job, and again for a larger one.
     queues: Option<Queues>,
     pace: Pace,
+    /// What the last job read back: memory for the next one, since pages that were never touched take as long as the copy.
+    read_back: (Vec<FilmSum>, Vec<AovPixel>),
 }
 
 /// What a job counted, and the control record it was last read from.
@@ -111,6 +113,7 @@ impl VulkanRenderer {
             page_limit: options.page_limit,
             queues: None,
             pace: Pace::new(1),
+            read_back: Default::default(),
         })
     }
 
@@ -161,10 +164,9 @@ impl VulkanRenderer {
     /// All samples of one band, its film read back.
     fn run_band(&mut self, band: Rect, job: &Job, tally: &mut Tally, watch: &Watch) -> Result<(), RenderError> {
         let queues = self.queues.as_ref().expect("made ready by the caller");
-        self.context.submit("clearing the film", |r| {
-            r.clear(&queues.film, queues.film.size());
-            r.clear(&queues.aovs, queues.aovs.size());
-        })?;
+        if self.header.aovs != 0 {
+            self.context.submit("clearing the auxiliary values", |r| r.clear(&queues.aovs, queues.aovs.size()))?;
+        }
         let mut finished: Option<Batch> = None;
         for batch in plan::batches(band, job.samples.clone(), queues.plan.batch) {
             run_batch(&mut self.context, queues, &mut self.pace, tally, batch, finished, watch)?;
@@ -182,11 +184,11 @@ impl VulkanRenderer {
     }
 
     /// A band's sums, and its auxiliary values if they are wanted.
-    fn read_band(&mut self, band: Rect) -> Result<(Vec<FilmSum>, Vec<AovPixel>), VulkanError> {
+    fn read_band(&mut self, sums: &mut [FilmSum], aovs: &mut [AovPixel]) -> Result<(), VulkanError> {
         let queues = self.queues.as_ref().expect("made ready by the caller");
-        let (sums, aovs) = (queues.film.clone(), queues.aovs.clone());
-        let aov_count = if self.header.aovs != 0 { band.area() } else { 0 };
-        Ok((self.context.download(&sums, 0, band.area())?, self.context.download(&aovs, 0, aov_count)?))
+        let (from, aovs_from) = (queues.film.clone(), queues.aovs.clone());
+        self.context.download_into(&from, 0, sums)?;
+        self.context.download_into(&aovs_from, 0, aovs)
     }
 }
 
@@ -269,18 +271,23 @@ impl Renderer for VulkanRenderer {
         let buffer = queues.control.clone();
         self.context.upload(&buffer, 0, bytemuck::bytes_of(&control))?;
         let mut tally = Tally::new(control);
-        let mut done = Vec::new();
+        // Bands are whole rows from the top: one after the other they are the crop.
+        let (mut sums, mut aovs) = std::mem::take(&mut self.read_back);
+        sums.resize(job.crop.area(), FilmSum::default());
+        aovs.resize(if self.header.aovs != 0 { sums.len() } else { 0 }, AovPixel::default());
+        let mut at = 0;
         for band in bands {
             self.run_band(band, job, &mut tally, watch)?;
-            done.push((band, self.read_band(band)?));
+            let place = at..at + band.area();
+            at = place.end;
+            self.read_band(&mut sums[place.clone()], aovs.get_mut(place).unwrap_or_default())?;
         }
         // All or nothing: a job that fails leaves the film as it was.
-        for (band, (sums, aovs)) in done {
-            film.add_sums(band, &sums);
-            if !aovs.is_empty() {
-                film.add_aovs(band, &aovs, job.samples.contains(&0));
-            }
+        film.add_sums(job.crop, &sums);
+        if !aovs.is_empty() {
+            film.add_aovs(job.crop, &aovs, job.samples.contains(&0));
         }
+        self.read_back = (sums, aovs);
         log::debug!("{} rays in {} rounds", tally.counters.closest_rays, tally.last.rounds);
         film.record(job.samples.clone(), tally.nan_count, tally.clamped_count);
         film.count_limited(tally.counters.limited);
