@@ -64,6 +64,8 @@ layout(constant_id = 26) const bool SCENE_SHADOWLESS = true;
 layout(constant_id = 27) const bool SCENE_HIDES_EMITTERS = true;
 // Contributions have a limit.
 layout(constant_id = 28) const bool SCENE_HAS_CLAMP = true;
+// Whether paths keep what they have passed since their direction was drawn: panes that filter, objects that cast no shadow.
+const bool SCENE_HAS_PASSING = SCENE_SHADOWLESS || SCENE_SHADOWS == SHADOWS_FILTERED;
 // Whether extend makes the camera rays of its chunk, or reads what waited.
 layout(constant_id = 32) const bool EXTEND_CAMERA = false;
 // Whether paths are shaded in groups by the model they hit, each by a kernel that has its models for `MODELS_PRESENT`.

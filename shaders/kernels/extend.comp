@@ -7,7 +7,7 @@
 #include "kernels/bindings.glsl"
 #include "kernels/queues.glsl"
 #include "trace/traverse.glsl"
-#include "transport/generate.glsl"
+#include "transport/begin.glsl"
 
 // The group of what was hit: models that the scene has are numbered in their order.
 uint shade_group(Hit hit) {
@@ -19,18 +19,6 @@ uint shade_group(Hit hit) {
     return 1u + uint(bitCount(MODELS_PRESENT & ~(0xffffffffu << model)));
 }
 
-// The path of the sample in `slot`.
-PathState begin_path(uint slot) {
-    PathState path = generate(batch, slot);
-    if (SCENE_HAS_AOVS && path.sample_index == 0u) {
-        uint index = slot_pixel(batch, slot);
-        aovs[index].depth = T_INFINITE;
-        aovs[index].object = INVALID;
-        aovs[index].material = INVALID;
-    }
-    return path;
-}
-
 void main() {
     begin_round();
     uint stored = control.chunk_stored;
@@ -39,7 +27,7 @@ void main() {
     if (i >= (EXTEND_CAMERA ? round_.chunk_count - stored : stored)) return;
     PathState path;
     if (EXTEND_CAMERA) {
-        path = begin_path(first + i);
+        path = begin_path(batch, first + i);
         i += stored;
     } else {
         path = load_path_state(first + i);

@@ -78,7 +78,17 @@ void add_contribution(float scale, uint slot, vec4 value, uint dither) {
     for (uint lane = 0u; lane < 4u; lane++) {
         Fixed units = to_fixed(value[lane], lane_scale(scale, lane), dither_lane(dither, lane));
         if ((units.low | units.high) != 0u) ATOMIC_ADD_FIXED(slots[slot], lane, units)
-        if (units.nan != 0u) atomicAdd(control.nan_count, 1u);
+        if (is_nan(value[lane])) atomicAdd(control.nan_count, 1u);
+    }
+}
+
+// Records for the auxiliary channels that a camera ray has met nothing; its first hit takes the place of that.
+void miss_aov(PathState path) {
+    if (path.sample_index == 0u) {
+        uint index = slot_pixel(batch, path.slot);
+        aovs[index].depth = T_INFINITE;
+        aovs[index].object = INVALID;
+        aovs[index].material = INVALID;
     }
 }
 

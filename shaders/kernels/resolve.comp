@@ -18,14 +18,7 @@ void main() {
     uint clamped_count = 0u;
     for (uint s = 0u; s < batch.sample_count; s++) {
         uint at = 2u * (pixel * batch.sample_count + s);
-        FilmSum seen = FilmSum(fetch_slot(at), fetch_slot(at + 1u));
-        uint clamped = 0u;
-        for (uint lane = 0u; lane < 4u; lane++) {
-            Fixed units = clamp_sample(seen.low[lane], seen.high[lane]);
-            add_fixed(sum, lane, units);
-            clamped |= units.nan;
-        }
-        clamped_count += clamped;
+        clamped_count += resolve_sample(sum, FilmSum(fetch_slot(at), fetch_slot(at + 1u)));
     }
     film[index] = sum;
     if (clamped_count != 0u) atomicAdd(control.clamped_count, clamped_count);

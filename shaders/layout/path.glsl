@@ -63,7 +63,8 @@ void store_hit(uint index, Hit r) {
 }
 #endif
 
-// A pending ray and all that its shading will need to know. 112 bytes.
+// A pending ray and all that its shading will need to know. 128 bytes.
+// The last word is kept only in scenes in which rays pass something (`SCENE_HAS_PASSING` of the kernels).
 struct PathState {
     Ray ray;
     // What a unit of radiance arriving along the ray adds to the sample; signed (negative filter lobes).
@@ -77,8 +78,7 @@ struct PathState {
     uint path_id;
     // Scattering events so far (passing straight through a pane is none).
     uint depth;
-    // On the camera's straight line (depth 0) what is still uncovered in front of this ray, for alpha. Off it 0, or with
-    // filtered shadows how far before the ray's origin its direction was drawn: the way through panes (path).
+    // What is still uncovered in front of this ray, for alpha; 0 off the camera's straight line (depth > 0).
     float coverage;
     // Relative index of the medium the ray travels in (1 outside everything).
     float eta;
@@ -89,10 +89,25 @@ struct PathState {
     vec3 absorption;
     // Media that the ray is inside of, where they have ranks (`shading/interior`).
     uint interior;
+    // How far before the ray's origin its direction was drawn: the way through what it has passed since (path).
+    float passed;
+    // `PATH_*`.
+    uint flags;
+    uint pad0;
+    uint pad1;
 };
-const uint PATH_STATE_WORDS = 7u;
+const uint PATH_STATE_WORDS = 8u;
+
+// Since its direction was drawn the ray has passed an object that casts no shadow: light samples found all light beyond it.
+const uint PATH_BEHIND_SHADOWLESS = 1u;
 
 #ifdef GONIO_FETCH
+// The last word of a path, zeros where it is not kept.
+uvec4 fetch_passing(uint at) {
+    if (SCENE_HAS_PASSING) return fetch_path(at);
+    return uvec4(0u);
+}
+
 PathState load_path_state(uint index) {
     uint at = index * PATH_STATE_WORDS;
     PathState r;
@@ -122,6 +137,11 @@ PathState load_path_state(uint index) {
     uvec4 w6 = fetch_path(at + 6u);
     r.absorption = uintBitsToFloat(w6.xyz);
     r.interior = w6.w;
+    uvec4 w7 = fetch_passing(at + 7u);
+    r.passed = uintBitsToFloat(w7.x);
+    r.flags = w7.y;
+    r.pad0 = w7.z;
+    r.pad1 = w7.w;
     return r;
 }
 
@@ -134,21 +154,22 @@ void store_path_state(uint index, PathState r) {
     put_path(at + 4u, uvec4(r.slot, r.pixel, r.sample_index, r.path_id));
     put_path(at + 5u, uvec4(r.depth, floatBitsToUint(r.coverage), floatBitsToUint(r.eta), floatBitsToUint(r.pdf)));
     put_path(at + 6u, uvec4(floatBitsToUint(r.absorption), r.interior));
+    if (SCENE_HAS_PASSING) put_path(at + 7u, uvec4(floatBitsToUint(r.passed), r.flags, r.pad0, r.pad1));
 }
 #endif
 
 // A shadow ray with the light it carries if nothing is in the way. 80 bytes.
 struct ShadowRay {
     Ray ray;
-    // Added to the sample if unoccluded (throughput included).
+    // Added to the sample, times `weight`, if nothing is in the way (throughput included).
     vec4 contribution;
     uint slot;
     // Hash that dithers the conversion to fixed point (`film` in transport).
     uint dither;
     // Panes passed so far.
     uint layer;
-    // 1 if the scene's `clamp` has limited the contribution.
-    uint limited;
+    // What multiple importance sampling leaves of the contribution, 0..1.
+    float weight;
 };
 const uint SHADOW_RAY_WORDS = 5u;
 
@@ -173,7 +194,7 @@ ShadowRay load_shadow_ray(uint index) {
     r.slot = w4.x;
     r.dither = w4.y;
     r.layer = w4.z;
-    r.limited = w4.w;
+    r.weight = uintBitsToFloat(w4.w);
     return r;
 }
 
@@ -183,7 +204,7 @@ void store_shadow_ray(uint index, ShadowRay r) {
     put_shadow(at + 1u, uvec4(floatBitsToUint(r.ray.direction), r.ray.skip_instance));
     put_shadow(at + 2u, uvec4(r.ray.skip_primitive, r.ray.skip_inward, floatBitsToUint(r.ray.cone_width), floatBitsToUint(r.ray.cone_spread)));
     put_shadow(at + 3u, floatBitsToUint(r.contribution));
-    put_shadow(at + 4u, uvec4(r.slot, r.dither, r.layer, r.limited));
+    put_shadow(at + 4u, uvec4(r.slot, r.dither, r.layer, floatBitsToUint(r.weight)));
 }
 #endif
 

@@ -228,6 +228,11 @@ bool trace_any(Ray ray) {
     return traverse(ray, true, true).instance != INVALID;
 }
 
+// Whether anything at all lies at 0 < t <= t_max.
+bool trace_barrier(Ray ray) {
+    return traverse(ray, true, false).instance != INVALID;
+}
+
 // The closest hit of what casts shadows, as `trace_closest`.
 Hit trace_occluder(Ray ray) {
     return traverse(ray, false, true);

@@ -13,11 +13,10 @@ const uint SAMPLE_LIMIT_HIGH = 64u;
 // Below this a contribution is nothing; above it no step of the conversion meets a subnormal.
 const float VALUE_MIN = 1.0e-30;
 
-// A signed 64-bit integer in two's complement, and whether the value it came from was not a number.
+// A signed 64-bit integer in two's complement.
 struct Fixed {
     uint low;
     uint high;
-    uint nan;
 };
 
 // Dither of one lane in 0..1, from a contribution's hash.
@@ -30,15 +29,16 @@ float lane_scale(float scale, uint lane) {
     return lane == 3u ? AOV_SCALE : scale;
 }
 
+// Whether `value` is not a number, told by its bits: no device need keep what compares as such.
+bool is_nan(float value) {
+    return (floatBitsToUint(value) & 0x7fffffffu) > 0x7f800000u;
+}
+
 // floor(value * scale + u) as a 64-bit integer. `scale` is a power of two, u in 0..1 dithers, so that light dimmer
-// than one unit is kept on average. Not-a-number gives 0 and is counted; beyond +-2^39 the value is clamped.
+// than one unit is kept on average. Not-a-number gives 0; beyond +-2^39 the value is clamped.
 Fixed to_fixed(float value, float scale, float u) {
-    uint magnitude_bits = floatBitsToUint(value) & 0x7fffffffu;
-    if (magnitude_bits > 0x7f800000u) {
-        return Fixed(0u, 0u, 1u);
-    }
-    if (abs(value) < VALUE_MIN) {
-        return Fixed(0u, 0u, 0u);
+    if (is_nan(value) || abs(value) < VALUE_MIN) {
+        return Fixed(0u, 0u);
     }
     float scaled = value * scale;
     float bounded = scaled > FIXED_LIMIT ? FIXED_LIMIT : scaled < -FIXED_LIMIT ? -FIXED_LIMIT : scaled;
@@ -54,9 +54,9 @@ Fixed to_fixed(float value, float scale, float u) {
         // Two's complement.
         uint negated = ~low + 1u;
         uint carry = negated == 0u ? 1u : 0u;
-        return Fixed(negated, ~high + carry, 0u);
+        return Fixed(negated, ~high + carry);
     }
-    return Fixed(low, high, 0u);
+    return Fixed(low, high);
 }
 
 // Adds to one lane of a sum, with carry.
@@ -67,17 +67,31 @@ void add_fixed(inout FilmSum sum, uint lane, Fixed value) {
     sum.high[lane] = sum.high[lane] + value.high + carry;
 }
 
-// A sample's lane as its pixel takes it: clamped to +-2^38 units; `nan` is 1 where it was clamped.
-Fixed clamp_sample(uint low, uint high) {
-    bool negative = (high & 0x80000000u) != 0u;
-    if (!negative && high >= SAMPLE_LIMIT_HIGH && (high > SAMPLE_LIMIT_HIGH || low > 0u)) {
-        return Fixed(0u, SAMPLE_LIMIT_HIGH, 1u);
+// A sample's lane as its pixel takes it: clamped to +-2^38 units.
+Fixed clamp_sample(Fixed units) {
+    bool negative = (units.high & 0x80000000u) != 0u;
+    if (!negative && units.high >= SAMPLE_LIMIT_HIGH && (units.high > SAMPLE_LIMIT_HIGH || units.low > 0u)) {
+        return Fixed(0u, SAMPLE_LIMIT_HIGH);
     }
     // -2^38 has the high word 2^32 - 64 and the low word 0.
-    if (negative && high < 0xffffffc0u) {
-        return Fixed(0u, 0xffffffc0u, 1u);
+    if (negative && units.high < 0xffffffc0u) {
+        return Fixed(0u, 0xffffffc0u);
     }
-    return Fixed(low, high, 0u);
+    return units;
+}
+
+// Adds the sum of a finished sample to that of its pixel; the result is 1 if a lane of it was clamped, else 0.
+uint resolve_sample(inout FilmSum pixel, FilmSum finished) {
+    uint clamped = 0u;
+    for (uint lane = 0u; lane < 4u; lane++) {
+        Fixed units = Fixed(finished.low[lane], finished.high[lane]);
+        Fixed taken = clamp_sample(units);
+        add_fixed(pixel, lane, taken);
+        if (taken.low != units.low || taken.high != units.high) {
+            clamped = 1u;
+        }
+    }
+    return clamped;
 }
 
 #endif

@@ -53,6 +53,10 @@ PathState generate(Batch batch, uint slot) {
     path.pdf = 0.0;
     path.absorption = vec3(0.0);
     path.interior = 0u;
+    path.passed = 0.0;
+    path.flags = 0u;
+    path.pad0 = 0u;
+    path.pad1 = 0u;
     return path;
 }
 

@@ -104,7 +104,7 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
                 uint light_dither = dither_hash(key, (DITHER_LIGHT + point.dither) + index);
                 if (header.shadows != 0u && light.casts_shadow != 0u) {
                     Ray ray = spawn_ray(point.shadow_from, lit.wi, lit.distance * SHADOW_END);
-                    push_shadow(ShadowRay(ray, contribution, path.slot, light_dither, 0u, 0u));
+                    push_shadow(ShadowRay(ray, contribution, path.slot, light_dither, 0u, 1.0));
                 } else {
                     add_contribution(header.film_scale, path.slot, contribution, light_dither);
                 }

@@ -1,7 +1,7 @@
 // From a ray's birth to its sum: pure steps over one path record, scheduled by the kernels.
 //
-// What a step appends goes through `push_path`, `push_shadow`, `add_contribution`, `count_limited` and `add_aov`
-// (`kernels/queues.glsl`). Twin: `src/transport/`.
+// What a step appends goes through `push_path`, `push_shadow`, `add_contribution`, `count_limited`, `miss_aov`
+// and `add_aov` (`kernels/queues.glsl`). Twin: `src/transport/`.
 #ifndef TRANSPORT_MOD_GLSL
 #define TRANSPORT_MOD_GLSL
 

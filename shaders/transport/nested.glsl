@@ -8,6 +8,7 @@
 #include "shading/sampling.glsl"
 #include "trace/spawn.glsl"
 #include "trace/surface.glsl"
+#include "transport/mis.glsl"
 #include "transport/mod.glsl"
 
 // Indices of rough glass are not between these, or no facet would refract.
@@ -26,7 +27,8 @@ vec3 medium_absorption(uint list) {
 
 // Prepares `material` of an interface that `path` meets: its index becomes relative to what is on the outer side there.
 // False if nothing is there, as a medium of higher rank is on both sides (or the same once more): the ray then goes on.
-bool meet_interface(PathState path, Surface surface, inout Material material) {
+// `t`: of the hit.
+bool meet_interface(PathState path, Surface surface, float t, inout Material material) {
     uint rank = medium_rank(material);
     if (rank == 0u) {
         return true;
@@ -38,7 +40,7 @@ bool meet_interface(PathState path, Surface surface, inout Material material) {
         PathState on = path;
         on.interior = entering ? interior_add(path.interior, rank) : rest;
         on.path_id = hash_combine(path.path_id, LOBE_THROUGH);
-        on.pdf = 0.0;
+        pass_surface(surface, t, false, on);
         on.ray = spawn_through(surface, path.ray.direction, path.ray.t_max);
         push_path(on);
         return false;

@@ -20,37 +20,13 @@
 #include "trace/spawn.glsl"
 #include "trace/surface.glsl"
 #include "transport/emitter.glsl"
+#include "transport/limit.glsl"
 #include "transport/local.glsl"
+#include "transport/mis.glsl"
 #include "transport/nested.glsl"
 #include "transport/mod.glsl"
+#include "transport/shadow.glsl"
 #include "transport/weight.glsl"
-
-// Factor that keeps a contribution of light that has been scattered within the scene's limit; below 1 where that bites.
-float limit(uint depth, Spectrum value) {
-    float largest = spectrum_max(value);
-    if (!SCENE_HAS_CLAMP || depth == 0u || largest <= header.clamp) {
-        return 1.0;
-    }
-    return div(header.clamp, largest);
-}
-
-// Adds light that a path has met, within the scene's limit; how often that bites is counted.
-// `coverage`: what it adds to alpha.
-void add_limited(PathState path, Spectrum value, float coverage, uint dither) {
-    float factor = limit(path.depth, value);
-    if (SCENE_HAS_CLAMP && factor < 1.0) count_limited();
-    Spectrum seen = value * factor;
-    add_contribution(header.film_scale, path.slot, vec4(seen.x, seen.y, seen.z, coverage), dither);
-}
-
-// Weight of light that a ray of density `own` has met where light samples would have had density `sampled`. An object that
-// casts no shadow is in the way of the one and not of the other, so in its scene light samples count in full.
-float met_weight(float own, float sampled) {
-    if (SCENE_SHADOWLESS && sampled > 0.0) {
-        return 0.0;
-    }
-    return power_heuristic(own, sampled);
-}
 
 // Adds what a ray that leaves the scene sees.
 void shade_escape(PathState path, SampleKey key) {
@@ -61,10 +37,10 @@ void shade_escape(PathState path, SampleKey key) {
     float weight = 1.0;
     if (HAS_EMITTER(EMITTER_ENVIRONMENT) && path.pdf > 0.0) {
         float sampled = header.environment_density * pdf_environment(path.ray.direction);
-        weight = met_weight(path.pdf, sampled);
+        weight = met_weight(path, sampled);
     }
     Spectrum seen = path.throughput * (radiance * weight);
-    add_limited(path, seen, 0.0, dither_hash(key, DITHER_BACKGROUND));
+    add_limited(path.slot, path.depth, seen, 0.0, dither_hash(key, DITHER_BACKGROUND));
 }
 
 // Light of one emitter, chosen at random, that the surface sends on towards `wo`; its shadow ray is appended.
@@ -89,20 +65,16 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
         return;
     }
     float weight = 1.0;
-    if (lit.pdf_solid_angle > 0.0 && !SCENE_SHADOWLESS) {
+    if (lit.pdf_solid_angle > 0.0) {
         weight = power_heuristic(lit.pdf_solid_angle, pdf_material(material, wo_local, wi_local));
     }
-    float factor = limit(path.depth + 1u, reflected * weight);
-    Spectrum seen = (reflected * weight) * factor;
-    uint limited = factor < 1.0 ? 1u : 0u;
-    vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
-    uint dither = dither_hash(key, DITHER_LIGHT);
+    vec4 contribution = vec4(reflected.x, reflected.y, reflected.z, 0.0);
+    Ray ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
+    ShadowRay shadow = ShadowRay(ray, contribution, path.slot, dither_hash(key, DITHER_LIGHT), 0u, weight);
     if (casts_shadow(emitter)) {
-        Ray ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
-        push_shadow(ShadowRay(ray, contribution, path.slot, dither, 0u, limited));
+        push_shadow(shadow);
     } else {
-        if (SCENE_HAS_CLAMP && limited != 0u) count_limited();
-        add_contribution(header.film_scale, path.slot, contribution, dither);
+        add_light(shadow);
     }
 }
 
@@ -124,6 +96,8 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
     next.depth = path.depth + 1u;
     next.path_id = hash_combine(path.path_id, LOBE_SCATTER);
     next.coverage = 0.0;
+    next.passed = 0.0;
+    next.flags = 0u;
     next.pdf = (bsdf.flags & SAMPLE_DELTA) != 0u ? 0.0 : bsdf.pdf;
     if ((bsdf.flags & SAMPLE_TRANSMIT) != 0u && material.model != MODEL_THIN_DIELECTRIC) {
         next.eta = path.eta * bsdf.eta;
@@ -147,23 +121,12 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
     push_path(next);
 }
 
-// Whether shadow rays pass the surface as if it were not there.
-bool lets_shadow_rays_pass(Surface surface) {
-    return SCENE_SHADOWLESS && (load_instance(surface.instance).flags & INSTANCE_NO_SHADOW) != 0u;
-}
-
 // Shades one hit: adds what glows, samples an emitter, and lets the path go on.
 // `key`: of the path. `named`: the surface's material, of which `material` is what is met here.
 void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uint named, Material material) {
     PathState path = incoming;
     vec3 direction = path.ray.direction;
     const bool filtered = SCENE_SHADOWS == SHADOWS_FILTERED;
-    // How far before the ray's origin its direction was drawn.
-    float passed = 0.0;
-    if (filtered && path.depth > 0u) {
-        passed = path.coverage;
-        path.coverage = 0.0;
-    }
     if (SCENE_HIDES_EMITTERS && path.depth == 0u && emission_material(material) != vec3(0.0)) {
         path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
         path.ray = spawn_through(surface, direction, path.ray.t_max);
@@ -180,12 +143,7 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uin
             path.throughput *= tint * rcp(through);
             path.coverage *= material.k_t * rcp(through);
             path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
-            if (filtered && path.depth > 0u) {
-                path.coverage = passed + hit.t;
-            }
-            if (!(filtered || lets_shadow_rays_pass(surface))) {
-                path.pdf = 0.0;
-            }
+            pass_surface(surface, hit.t, filtered, path);
             path.ray = spawn_through(surface, direction, path.ray.t_max);
             push_path(path);
             return;
@@ -200,12 +158,12 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uin
     if (glows || path.coverage != 0.0) {
         float weight = 1.0;
         if (glows && path.pdf > 0.0) {
-            vec3 from = filtered ? path.ray.origin - direction * passed : path.ray.origin;
-            float sampled = pdf_emitter(from, direction, filtered ? passed + hit.t : hit.t, surface, named);
-            weight = met_weight(path.pdf, sampled);
+            vec3 from = path.ray.origin - direction * path.passed;
+            float sampled = pdf_emitter(from, direction, path.passed + hit.t, surface, named);
+            weight = met_weight(path, sampled);
         }
         Spectrum seen = path.throughput * (own_light * weight);
-        add_limited(path, seen, path.coverage, dither_hash(key, DITHER_SURFACE));
+        add_limited(path.slot, path.depth, seen, path.coverage, dither_hash(key, DITHER_SURFACE));
     }
     if (path.depth >= header.max_depth || is_hidden_back(surface, material, wo)) {
         return;

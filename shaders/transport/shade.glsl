@@ -52,7 +52,7 @@ void shade(PathState incoming, Hit hit) {
     Material material = material_at(path.ray.direction, hit, key, DIMENSION_LEAF, surface);
     NAME_MODEL(material)
     if (SCENE_NESTED) {
-        if (!meet_interface(path, surface, material)) {
+        if (!meet_interface(path, surface, hit.t, material)) {
             return;
         }
     }

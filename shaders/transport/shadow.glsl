@@ -1,4 +1,4 @@
-// What becomes of a shadow ray that panes colour on its way (row 22 without the lecture's assumption).
+// What becomes of a shadow ray.
 #ifndef TRANSPORT_SHADOW_GLSL
 #define TRANSPORT_SHADOW_GLSL
 
@@ -7,18 +7,32 @@
 #include "shading/spectrum.glsl"
 #include "trace/spawn.glsl"
 #include "trace/surface.glsl"
+#include "trace/traverse.glsl"
 #include "transport/generate.glsl"
+#include "transport/limit.glsl"
+#include "transport/local.glsl"
 #include "transport/textured.glsl"
 
-// Adds the light of a shadow ray whose way is free. Where `hit`, the nearest thing in its way, is a pane, the ray goes on
-// behind it with what the pane lets through: tints are multiplied in the order of distance, whatever the order in which
-// rays are traced. A blend's material is drawn anew for each pane and light.
-void shade_shadow(ShadowRay shadow, Hit hit) {
-    if (hit.instance == INVALID) {
-        if (SCENE_HAS_CLAMP && shadow.limited != 0u) count_limited();
-        add_contribution(header.film_scale, shadow.slot, shadow.contribution, shadow.dither);
-        return;
+// Adds the light of a shadow ray whose way is free. It has been scattered once at least.
+void add_light(ShadowRay shadow) {
+    add_limited(shadow.slot, 1u, shadow.contribution * shadow.weight, 0.0, shadow.dither);
+}
+
+// The weight of a shadow ray over the free way from its origin to `t`. Where an object that casts no shadow is in the way, no
+// ray that a surface scatters could have found the light: it counts in full.
+float way_weight(ShadowRay shadow, float t) {
+    if (!SCENE_SHADOWLESS || shadow.weight >= 1.0) {
+        return shadow.weight;
     }
+    Ray way = shadow.ray;
+    way.t_max = t;
+    return trace_barrier(way) ? 1.0 : shadow.weight;
+}
+
+// Lets a shadow ray go on behind `hit`, the nearest thing in its way, with what that lets through: tints are multiplied in the
+// order of distance, whatever the order in which rays are traced (row 22 without the lecture's assumption). A blend's material
+// is drawn anew for each pane and light.
+void filter_shadow(ShadowRay shadow, Hit hit) {
     SampleKey key = sample_key(shadow.dither, shadow.layer, 0u);
     Surface surface = surface_at(shadow.ray, hit);
     Material material = material_at(shadow.ray.direction, hit, key, DIMENSION_LEAF, surface);
@@ -30,6 +44,23 @@ void shade_shadow(ShadowRay shadow, Hit hit) {
     beyond.ray = spawn_through(surface, shadow.ray.direction, shadow.ray.t_max - hit.t);
     beyond.layer = shadow.layer + 1u;
     push_shadow(beyond);
+}
+
+// Traces a shadow ray: adds its light where nothing is in the way; with filtered shadows it may go on behind a pane.
+void trace_shadow(ShadowRay shadow) {
+    ShadowRay seen = shadow;
+    if (SCENE_SHADOWS == SHADOWS_FILTERED) {
+        Hit hit = trace_occluder(shadow.ray);
+        if (hit.instance != INVALID) {
+            seen.weight = way_weight(shadow, hit.t * SHADOW_END);
+            filter_shadow(seen, hit);
+            return;
+        }
+    } else if (trace_any(shadow.ray)) {
+        return;
+    }
+    seen.weight = way_weight(shadow, shadow.ray.t_max);
+    add_light(seen);
 }
 
 #endif

@@ -139,19 +139,6 @@ fn bake_light_sources(scene: &Scene, parts: &Parts, data: &mut SceneData) -> Res
         primitives.sort_unstable();
         primitives
     };
-    // What passes a pane is found by chance and counts in full: no shadow ray may find it as well.
-    for index in 0..data.instances.len() {
-        let instance = &data.instances[index];
-        let of_face = |primitive: u32| data.faces[(instance.first_face + primitive) as usize].material;
-        let is_pane = |id: u32| data.materials[id as usize].k_t > 0.0;
-        let pane = match instance.material {
-            INVALID => primitives(index).into_iter().any(|primitive| is_pane(of_face(primitive))),
-            id => is_pane(id),
-        };
-        if pane {
-            data.instances[index].flags &= !INSTANCE_NO_SHADOW;
-        }
-    }
     bake_emitters(environment, &primitives, world, data)
 }
 
@@ -387,7 +374,8 @@ fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
         },
         film_scale: libm::ldexp(1.0, exponent) as f32,
         rr_depth: settings.rr_depth,
-        clamp: settings.clamp.unwrap_or(0.0),
+        // Only paths have scattered light to limit.
+        clamp: if traced(scene) { settings.clamp.unwrap_or(0.0) } else { 0.0 },
         hide_background: u32::from(settings.hide_emitters && traced(scene)),
         hide_emitters: u32::from(settings.hide_emitters && traced(scene)),
         ..SceneHeader::default()

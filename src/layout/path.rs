@@ -43,7 +43,8 @@ pub struct Hit {
     pub _pad2: u32,
 }
 
-/// A pending ray and all that its shading will need to know. 112 bytes.
+/// A pending ray and all that its shading will need to know. 128 bytes.
+/// The last word is kept only in scenes in which rays pass something (`SCENE_HAS_PASSING` of the kernels).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct PathState {
@@ -59,8 +60,7 @@ pub struct PathState {
     pub path_id: u32,
     /// Scattering events so far (passing straight through a pane is none).
     pub depth: u32,
-    /// On the camera's straight line (depth 0) what is still uncovered in front of this ray, for alpha. Off it 0, or with
-    /// filtered shadows how far before the ray's origin its direction was drawn: the way through panes (path).
+    /// What is still uncovered in front of this ray, for alpha; 0 off the camera's straight line (depth > 0).
     pub coverage: f32,
     /// Relative index of the medium the ray travels in (1 outside everything).
     pub eta: f32,
@@ -71,20 +71,29 @@ pub struct PathState {
     pub absorption: Vec3,
     /// Media that the ray is inside of, where they have ranks (`shading/interior`).
     pub interior: u32,
+    /// How far before the ray's origin its direction was drawn: the way through what it has passed since (path).
+    pub passed: f32,
+    /// `PATH_*`.
+    pub flags: u32,
+    pub _pad0: u32,
+    pub _pad1: u32,
 }
+
+/// Since its direction was drawn the ray has passed an object that casts no shadow: light samples found all light beyond it.
+pub const PATH_BEHIND_SHADOWLESS: u32 = 1;
 
 /// A shadow ray with the light it carries if nothing is in the way. 80 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ShadowRay {
     pub ray: Ray,
-    /// Added to the sample if unoccluded (throughput included).
+    /// Added to the sample, times `weight`, if nothing is in the way (throughput included).
     pub contribution: Vec4,
     pub slot: u32,
     /// Hash that dithers the conversion to fixed point (`film` in transport).
     pub dither: u32,
     /// Panes passed so far.
     pub layer: u32,
-    /// 1 if the scene's `clamp` has limited the contribution.
-    pub limited: u32,
+    /// What multiple importance sampling leaves of the contribution, 0..1.
+    pub weight: f32,
 }

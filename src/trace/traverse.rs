@@ -283,6 +283,11 @@ pub fn trace_any(scene: &SceneView, ray: &Ray) -> bool {
     Walk::<_, true, true> { eight: Portable, scene, ray }.run().instance != INVALID
 }
 
+/// Whether anything at all lies at 0 < t <= t_max.
+pub fn trace_barrier(scene: &SceneView, ray: &Ray) -> bool {
+    Walk::<_, true, false> { eight: Portable, scene, ray }.run().instance != INVALID
+}
+
 /// The closest hit of what casts shadows, as `trace_closest`.
 pub fn trace_occluder(scene: &SceneView, ray: &Ray) -> Hit {
     Walk::<_, false, true> { eight: Portable, scene, ray }.run()

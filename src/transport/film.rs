@@ -12,12 +12,11 @@ const SAMPLE_LIMIT_HIGH: u32 = 64;
 /// Below this a contribution is nothing; above it no step of the conversion meets a subnormal.
 const VALUE_MIN: f32 = 1.0e-30;
 
-/// A signed 64-bit integer in two's complement, and whether the value it came from was not a number.
+/// A signed 64-bit integer in two's complement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fixed {
     pub low: u32,
     pub high: u32,
-    pub nan: u32,
 }
 
 /// Dither of one lane in 0..1, from a contribution's hash.
@@ -30,15 +29,16 @@ pub fn lane_scale(scale: f32, lane: u32) -> f32 {
     if lane == 3 { AOV_SCALE } else { scale }
 }
 
+/// Whether `value` is not a number, told by its bits: no device need keep what compares as such.
+pub fn is_nan(value: f32) -> bool {
+    (value.to_bits() & 0x7fff_ffff) > 0x7f80_0000
+}
+
 /// floor(value * scale + u) as a 64-bit integer. `scale` is a power of two, u in 0..1 dithers, so that light dimmer
-/// than one unit is kept on average. Not-a-number gives 0 and is counted; beyond +-2^39 the value is clamped.
+/// than one unit is kept on average. Not-a-number gives 0; beyond +-2^39 the value is clamped.
 pub fn to_fixed(value: f32, scale: f32, u: f32) -> Fixed {
-    let magnitude_bits = value.to_bits() & 0x7fff_ffff;
-    if magnitude_bits > 0x7f80_0000 {
-        return Fixed { low: 0, high: 0, nan: 1 };
-    }
-    if value.abs() < VALUE_MIN {
-        return Fixed { low: 0, high: 0, nan: 0 };
+    if is_nan(value) || value.abs() < VALUE_MIN {
+        return Fixed { low: 0, high: 0 };
     }
     let scaled = value * scale;
     let bounded = if scaled > FIXED_LIMIT {
@@ -60,9 +60,9 @@ pub fn to_fixed(value: f32, scale: f32, u: f32) -> Fixed {
         // Two's complement.
         let negated = (!low).wrapping_add(1);
         let carry = if negated == 0 { 1 } else { 0 };
-        return Fixed { low: negated, high: (!high).wrapping_add(carry), nan: 0 };
+        return Fixed { low: negated, high: (!high).wrapping_add(carry) };
     }
-    Fixed { low, high, nan: 0 }
+    Fixed { low, high }
 }
 
 /// Adds to one lane of a sum, with carry.
@@ -74,15 +74,29 @@ pub fn add_fixed(sum: &mut FilmSum, lane: u32, value: Fixed) {
     sum.high[i] = sum.high[i].wrapping_add(value.high).wrapping_add(carry);
 }
 
-/// A sample's lane as its pixel takes it: clamped to +-2^38 units; `nan` is 1 where it was clamped.
-pub fn clamp_sample(low: u32, high: u32) -> Fixed {
-    let negative = (high & 0x8000_0000) != 0;
-    if !negative && high >= SAMPLE_LIMIT_HIGH && (high > SAMPLE_LIMIT_HIGH || low > 0) {
-        return Fixed { low: 0, high: SAMPLE_LIMIT_HIGH, nan: 1 };
+/// A sample's lane as its pixel takes it: clamped to +-2^38 units.
+pub fn clamp_sample(units: Fixed) -> Fixed {
+    let negative = (units.high & 0x8000_0000) != 0;
+    if !negative && units.high >= SAMPLE_LIMIT_HIGH && (units.high > SAMPLE_LIMIT_HIGH || units.low > 0) {
+        return Fixed { low: 0, high: SAMPLE_LIMIT_HIGH };
     }
     // -2^38 has the high word 2^32 - 64 and the low word 0.
-    if negative && high < 0xffff_ffc0 {
-        return Fixed { low: 0, high: 0xffff_ffc0, nan: 1 };
+    if negative && units.high < 0xffff_ffc0 {
+        return Fixed { low: 0, high: 0xffff_ffc0 };
     }
-    Fixed { low, high, nan: 0 }
+    units
+}
+
+/// Adds the sum of a finished sample to that of its pixel; the result is 1 if a lane of it was clamped, else 0.
+pub fn resolve_sample(pixel: &mut FilmSum, finished: &FilmSum) -> u32 {
+    let mut clamped = 0;
+    for lane in 0..4 {
+        let units = Fixed { low: finished.low[lane as usize], high: finished.high[lane as usize] };
+        let taken = clamp_sample(units);
+        add_fixed(pixel, lane, taken);
+        if taken.low != units.low || taken.high != units.high {
+            clamped = 1;
+        }
+    }
+    clamped
 }

@@ -57,5 +57,9 @@ pub fn generate(scene: &SceneView, batch: &Batch, slot: u32) -> PathState {
         pdf: 0.0,
         absorption: Vec3::ZERO,
         interior: 0,
+        passed: 0.0,
+        flags: 0,
+        _pad0: 0,
+        _pad1: 0,
     }
 }

@@ -127,7 +127,7 @@ pub fn shade_local(
                     let ray = spawn_ray(&point.shadow_from, lit.wi, lit.distance * SHADOW_END);
                     push_shadow(
                         queues,
-                        ShadowRay { ray, contribution, slot: path.slot, dither: light_dither, layer: 0, limited: 0 },
+                        ShadowRay { ray, contribution, slot: path.slot, dither: light_dither, layer: 0, weight: 1.0 },
                     );
                 } else {
                     add_contribution(queues, scene.header.film_scale, path.slot, contribution, light_dither);

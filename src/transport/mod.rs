@@ -2,15 +2,18 @@
 //!
 //! `generate` makes the camera ray of a sample, `shade` turns a ray and its hit into contributions, shadow rays and
 //! further rays, `film` converts contributions to the film's integers and resolves a sample into its pixel.
-//! Twins in `shaders/transport/`. What a step appends goes through `push_path`, `push_shadow`, `add_contribution` and
-//! `add_aov`; on the device these are the kernels' queues (`shaders/kernels/queues.glsl`).
+//! Twins in `shaders/transport/`. What a step appends goes through `push_path`, `push_shadow`, `add_contribution`,
+//! `miss_aov` and `add_aov`; on the device these are the kernels' queues (`shaders/kernels/queues.glsl`).
 
 pub mod area_light;
+pub mod begin;
 pub mod emitter;
 pub mod faceted;
 pub mod film;
 pub mod generate;
+pub mod limit;
 pub mod local;
+pub mod mis;
 pub mod nested;
 pub mod path;
 pub mod shade;
@@ -19,7 +22,7 @@ pub mod textured;
 pub mod weight;
 pub mod whitted;
 
-use crate::layout::{AovPixel, FilmSum, PathState, ShadowRay};
+use crate::layout::{AovPixel, FilmSum, INVALID, PathState, ShadowRay, T_INFINITE};
 use glam::{Vec3, Vec4};
 
 /// Dimensions of a sample's random numbers: pairs drawn for the named purpose.
@@ -84,7 +87,16 @@ pub fn add_contribution(queues: &mut Queues, scale: f32, slot: u32, value: Vec4,
         let lane_scale = film::lane_scale(scale, lane);
         let fixed = film::to_fixed(values[lane as usize], lane_scale, film::dither_lane(dither, lane));
         film::add_fixed(&mut queues.sum, lane, fixed);
-        queues.nan_count += u64::from(fixed.nan);
+        queues.nan_count += u64::from(film::is_nan(values[lane as usize]));
+    }
+}
+
+/// Records for the auxiliary channels that a camera ray has met nothing; its first hit takes the place of that.
+pub fn miss_aov(queues: &mut Queues, path: &PathState) {
+    if path.sample_index == 0 {
+        queues.aov.depth = T_INFINITE;
+        queues.aov.object = INVALID;
+        queues.aov.material = INVALID;
     }
 }
 

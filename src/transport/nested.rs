@@ -1,5 +1,6 @@
 //! Interfaces between clear bodies that overlap (`shading/interior`): which of them are there, and between what.
 
+use super::mis::pass_surface;
 use super::{LOBE_THROUGH, Queues, push_path};
 use crate::layout::{MODEL_ROUGH_DIELECTRIC, Material, PathState, SceneView, load_table};
 use crate::shading::interior::{interior_add, interior_remove, interior_top, medium_rank};
@@ -25,10 +26,12 @@ pub fn medium_absorption(scene: &SceneView, list: u32) -> Vec3 {
 
 /// Prepares `material` of an interface that `path` meets: its index becomes relative to what is on the outer side there.
 /// False if nothing is there, as a medium of higher rank is on both sides (or the same once more): the ray then goes on.
+/// `t`: of the hit.
 pub fn meet_interface(
     scene: &SceneView,
     path: &PathState,
     surface: &Surface,
+    t: f32,
     material: &mut Material,
     queues: &mut Queues,
 ) -> bool {
@@ -43,7 +46,7 @@ pub fn meet_interface(
         let mut on = *path;
         on.interior = if entering { interior_add(path.interior, rank) } else { rest };
         on.path_id = hash_combine(path.path_id, LOBE_THROUGH);
-        on.pdf = 0.0;
+        pass_surface(scene, surface, t, false, &mut on);
         on.ray = spawn_through(surface, path.ray.direction, path.ray.t_max);
         push_path(queues, on);
         return false;

@@ -9,17 +9,19 @@
 //! (`transport/shadow`), and a ray that passes one stays a sample of the direction it was drawn with.
 
 use super::emitter::{casts_shadow, choose_emitter, pdf_emitter, sample_emitter};
+use super::limit::add_limited;
 use super::local::{SHADOW_END, emitted, is_hidden_back, shading_frame};
+use super::mis::{met_weight, pass_surface};
 use super::nested::medium_absorption;
+use super::shadow::add_light;
 use super::weight::{consistent, power_heuristic, survival};
 use super::{
     DIMENSION_BSDF, DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, DIMENSION_LOBE, DIMENSION_PANE, DIMENSION_ROULETTE,
-    DITHER_BACKGROUND, DITHER_LIGHT, DITHER_SURFACE, LOBE_SCATTER, LOBE_THROUGH, Queues, add_contribution,
-    count_limited, push_path, push_shadow,
+    DITHER_BACKGROUND, DITHER_LIGHT, DITHER_SURFACE, LOBE_SCATTER, LOBE_THROUGH, Queues, push_path, push_shadow,
 };
 use crate::layout::{
-    EMITTER_LIGHT, Hit, INSTANCE_NO_SHADOW, MODEL_THIN_DIELECTRIC, Material, PathState, SHADOWS_FILTERED, SceneView,
-    ShadowRay, T_INFINITE, load_emitter, load_instance,
+    EMITTER_LIGHT, Hit, MODEL_THIN_DIELECTRIC, Material, PathState, SHADOWS_FILTERED, SceneView, ShadowRay, T_INFINITE,
+    load_emitter,
 };
 use crate::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
 use crate::shading::environment::{background, pdf_environment};
@@ -30,40 +32,10 @@ use crate::shading::material::{
 };
 use crate::shading::math::{div, rcp};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, sample_1d, sample_2d};
-use crate::shading::spectrum::{Spectrum, spectrum_flush, spectrum_from_rgb, spectrum_max};
+use crate::shading::spectrum::{spectrum_flush, spectrum_from_rgb, spectrum_max};
 use crate::trace::spawn::{spawn_ray, spawn_through};
 use crate::trace::surface::Surface;
 use glam::{Vec2, Vec3, Vec4};
-
-/// Factor that keeps a contribution of light that has been scattered within the scene's limit; below 1 where that bites.
-pub fn limit(scene: &SceneView, depth: u32, value: Spectrum) -> f32 {
-    let largest = spectrum_max(value);
-    if scene.header.clamp <= 0.0 || depth == 0 || largest <= scene.header.clamp {
-        return 1.0;
-    }
-    div(scene.header.clamp, largest)
-}
-
-/// Adds light that a path has met, within the scene's limit; how often that bites is counted.
-/// `coverage`: what it adds to alpha.
-fn add_limited(scene: &SceneView, path: &PathState, value: Spectrum, coverage: f32, dither: u32, queues: &mut Queues) {
-    let factor = limit(scene, path.depth, value);
-    if factor < 1.0 {
-        count_limited(queues);
-    }
-    let seen = value * factor;
-    let contribution = Vec4::new(seen.x, seen.y, seen.z, coverage);
-    add_contribution(queues, scene.header.film_scale, path.slot, contribution, dither);
-}
-
-/// Weight of light that a ray of density `own` has met where light samples would have had density `sampled`. An object that
-/// casts no shadow is in the way of the one and not of the other, so in its scene light samples count in full.
-pub fn met_weight(scene: &SceneView, own: f32, sampled: f32) -> f32 {
-    if scene.header.shadowless != 0 && sampled > 0.0 {
-        return 0.0;
-    }
-    power_heuristic(own, sampled)
-}
 
 /// Adds what a ray that leaves the scene sees.
 pub fn shade_escape(scene: &SceneView, path: &PathState, key: SampleKey, queues: &mut Queues) {
@@ -74,10 +46,10 @@ pub fn shade_escape(scene: &SceneView, path: &PathState, key: SampleKey, queues:
     let mut weight = 1.0;
     if path.pdf > 0.0 {
         let sampled = scene.header.environment_density * pdf_environment(scene, path.ray.direction);
-        weight = met_weight(scene, path.pdf, sampled);
+        weight = met_weight(scene, path, sampled);
     }
     let seen = path.throughput * (radiance * weight);
-    add_limited(scene, path, seen, 0.0, dither_hash(key, DITHER_BACKGROUND), queues);
+    add_limited(scene, path.slot, path.depth, seen, 0.0, dither_hash(key, DITHER_BACKGROUND), queues);
 }
 
 /// Light of one emitter, chosen at random, that the surface sends on towards `wo`; its shadow ray is appended.
@@ -112,22 +84,17 @@ fn shade_emitter(
         return;
     }
     let mut weight = 1.0;
-    if lit.pdf_solid_angle > 0.0 && scene.header.shadowless == 0 {
+    if lit.pdf_solid_angle > 0.0 {
         weight = power_heuristic(lit.pdf_solid_angle, pdf_material(scene, material, wo_local, wi_local));
     }
-    let factor = limit(scene, path.depth + 1, reflected * weight);
-    let seen = (reflected * weight) * factor;
-    let limited = if factor < 1.0 { 1 } else { 0 };
-    let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
-    let dither = dither_hash(key, DITHER_LIGHT);
+    let contribution = Vec4::new(reflected.x, reflected.y, reflected.z, 0.0);
+    let ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
+    let shadow =
+        ShadowRay { ray, contribution, slot: path.slot, dither: dither_hash(key, DITHER_LIGHT), layer: 0, weight };
     if casts_shadow(scene, &emitter) {
-        let ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
-        push_shadow(queues, ShadowRay { ray, contribution, slot: path.slot, dither, layer: 0, limited });
+        push_shadow(queues, shadow);
     } else {
-        if limited != 0 {
-            count_limited(queues);
-        }
-        add_contribution(queues, scene.header.film_scale, path.slot, contribution, dither);
+        add_light(scene, &shadow, queues);
     }
 }
 
@@ -159,6 +126,8 @@ fn scatter(
     next.depth = path.depth + 1;
     next.path_id = hash_combine(path.path_id, LOBE_SCATTER);
     next.coverage = 0.0;
+    next.passed = 0.0;
+    next.flags = 0;
     next.pdf = if (bsdf.flags & SAMPLE_DELTA) != 0 { 0.0 } else { bsdf.pdf };
     if (bsdf.flags & SAMPLE_TRANSMIT) != 0 && material.model != MODEL_THIN_DIELECTRIC {
         next.eta = path.eta * bsdf.eta;
@@ -182,11 +151,6 @@ fn scatter(
     push_path(queues, next);
 }
 
-/// Whether shadow rays pass the surface as if it were not there.
-pub fn lets_shadow_rays_pass(scene: &SceneView, surface: &Surface) -> bool {
-    scene.header.shadowless != 0 && (load_instance(scene, surface.instance).flags & INSTANCE_NO_SHADOW) != 0
-}
-
 /// Shades one hit: adds what glows, samples an emitter, and lets the path go on.
 /// `key`: of the path. `named`: the surface's material, of which `material` is what is met here.
 #[allow(clippy::too_many_arguments, reason = "to read like its twin")]
@@ -203,12 +167,6 @@ pub fn shade_path(
     let mut path = *incoming;
     let direction = path.ray.direction;
     let filtered = scene.header.shadows == SHADOWS_FILTERED;
-    // How far before the ray's origin its direction was drawn.
-    let mut passed = 0.0;
-    if filtered && path.depth > 0 {
-        passed = path.coverage;
-        path.coverage = 0.0;
-    }
     if scene.header.hide_emitters != 0 && path.depth == 0 && emission_material(material) != Vec3::ZERO {
         path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
         path.ray = spawn_through(surface, direction, path.ray.t_max);
@@ -225,12 +183,7 @@ pub fn shade_path(
             path.throughput *= tint * rcp(through);
             path.coverage *= material.k_t * rcp(through);
             path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
-            if filtered && path.depth > 0 {
-                path.coverage = passed + hit.t;
-            }
-            if !(filtered || lets_shadow_rays_pass(scene, surface)) {
-                path.pdf = 0.0;
-            }
+            pass_surface(scene, surface, hit.t, filtered, &mut path);
             path.ray = spawn_through(surface, direction, path.ray.t_max);
             push_path(queues, path);
             return;
@@ -245,12 +198,13 @@ pub fn shade_path(
     if glows || path.coverage != 0.0 {
         let mut weight = 1.0;
         if glows && path.pdf > 0.0 {
-            let from = path.ray.origin - direction * passed;
-            let sampled = pdf_emitter(scene, from, direction, passed + hit.t, surface, named);
-            weight = met_weight(scene, path.pdf, sampled);
+            let from = path.ray.origin - direction * path.passed;
+            let sampled = pdf_emitter(scene, from, direction, path.passed + hit.t, surface, named);
+            weight = met_weight(scene, &path, sampled);
         }
         let seen = path.throughput * (own_light * weight);
-        add_limited(scene, &path, seen, path.coverage, dither_hash(key, DITHER_SURFACE), queues);
+        let dither = dither_hash(key, DITHER_SURFACE);
+        add_limited(scene, path.slot, path.depth, seen, path.coverage, dither, queues);
     }
     if path.depth >= scene.header.max_depth || is_hidden_back(surface, material, wo) {
         return;

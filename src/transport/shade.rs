@@ -53,7 +53,7 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     let mut surface = surface_at(scene, &path.ray, hit);
     let named = surface.material;
     let mut material = material_at(scene, path.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
-    if scene.header.nested != 0 && !meet_interface(scene, &path, &surface, &mut material, queues) {
+    if scene.header.nested != 0 && !meet_interface(scene, &path, &surface, hit.t, &mut material, queues) {
         return;
     }
     if scene.header.aovs != 0 && path.path_id == 0 {

@@ -1,25 +1,37 @@
-//! What becomes of a shadow ray that panes colour on its way (row 22 without the lecture's assumption).
+//! What becomes of a shadow ray.
 
 use super::generate::sample_key;
+use super::limit::add_limited;
+use super::local::SHADOW_END;
 use super::textured::material_at;
-use super::{DIMENSION_LEAF, Queues, add_contribution, count_limited, push_shadow};
-use crate::layout::{Hit, INVALID, SceneView, ShadowRay};
+use super::{DIMENSION_LEAF, Queues, push_shadow};
+use crate::layout::{Hit, INVALID, SHADOWS_FILTERED, SceneView, ShadowRay};
 use crate::shading::material::pane_tint;
 use crate::shading::spectrum::{spectrum_flush, spectrum_max};
 use crate::trace::spawn::spawn_through;
 use crate::trace::surface::surface_at;
+use crate::trace::traverse::{trace_any, trace_barrier, trace_occluder};
 
-/// Adds the light of a shadow ray whose way is free. Where `hit`, the nearest thing in its way, is a pane, the ray goes on
-/// behind it with what the pane lets through: tints are multiplied in the order of distance, whatever the order in which
-/// rays are traced. A blend's material is drawn anew for each pane and light.
-pub fn shade_shadow(scene: &SceneView, shadow: &ShadowRay, hit: &Hit, queues: &mut Queues) {
-    if hit.instance == INVALID {
-        if shadow.limited != 0 {
-            count_limited(queues);
-        }
-        add_contribution(queues, scene.header.film_scale, shadow.slot, shadow.contribution, shadow.dither);
-        return;
+/// Adds the light of a shadow ray whose way is free. It has been scattered once at least.
+pub fn add_light(scene: &SceneView, shadow: &ShadowRay, queues: &mut Queues) {
+    add_limited(scene, shadow.slot, 1, shadow.contribution * shadow.weight, 0.0, shadow.dither, queues);
+}
+
+/// The weight of a shadow ray over the free way from its origin to `t`. Where an object that casts no shadow is in the way, no
+/// ray that a surface scatters could have found the light: it counts in full.
+pub fn way_weight(scene: &SceneView, shadow: &ShadowRay, t: f32) -> f32 {
+    if scene.header.shadowless == 0 || shadow.weight >= 1.0 {
+        return shadow.weight;
     }
+    let mut way = shadow.ray;
+    way.t_max = t;
+    if trace_barrier(scene, &way) { 1.0 } else { shadow.weight }
+}
+
+/// Lets a shadow ray go on behind `hit`, the nearest thing in its way, with what that lets through: tints are multiplied in the
+/// order of distance, whatever the order in which rays are traced (row 22 without the lecture's assumption). A blend's material
+/// is drawn anew for each pane and light.
+pub fn filter_shadow(scene: &SceneView, shadow: &ShadowRay, hit: &Hit, queues: &mut Queues) {
     let key = sample_key(scene.header, shadow.dither, shadow.layer, 0);
     let mut surface = surface_at(scene, &shadow.ray, hit);
     let material = material_at(scene, shadow.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
@@ -31,4 +43,21 @@ pub fn shade_shadow(scene: &SceneView, shadow: &ShadowRay, hit: &Hit, queues: &m
     beyond.ray = spawn_through(&surface, shadow.ray.direction, shadow.ray.t_max - hit.t);
     beyond.layer = shadow.layer + 1;
     push_shadow(queues, beyond);
+}
+
+/// Traces a shadow ray: adds its light where nothing is in the way; with filtered shadows it may go on behind a pane.
+pub fn trace_shadow(scene: &SceneView, shadow: &ShadowRay, queues: &mut Queues) {
+    let mut seen = *shadow;
+    if scene.header.shadows == SHADOWS_FILTERED {
+        let hit = trace_occluder(scene, &shadow.ray);
+        if hit.instance != INVALID {
+            seen.weight = way_weight(scene, shadow, hit.t * SHADOW_END);
+            filter_shadow(scene, &seen, &hit, queues);
+            return;
+        }
+    } else if trace_any(scene, &shadow.ray) {
+        return;
+    }
+    seen.weight = way_weight(scene, shadow, shadow.ray.t_max);
+    add_light(scene, &seen, queues);
 }

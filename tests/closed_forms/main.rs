@@ -11,6 +11,7 @@ mod nested;
 mod panes;
 #[path = "../common/scenes.rs"]
 mod scenes;
+mod shadowless;
 #[path = "../common/statistics.rs"]
 mod statistics;
 

@@ -109,8 +109,9 @@ records! {
     Hit { t, b1, b2, instance, primitive, _pad0, _pad1, _pad2 }
     PathState {
         ray, throughput, slot, pixel, sample_index, path_id, depth, coverage, eta, pdf, absorption, interior,
+        passed, flags, _pad0, _pad1,
     }
-    ShadowRay { ray, contribution, slot, dither, layer, limited }
+    ShadowRay { ray, contribution, slot, dither, layer, weight }
     Camera {
         eye, kind, right, scale_x, up, scale_y, forward, pixel_size, lens_radius, focus_distance, shift_x, shift_y,
     }
@@ -184,7 +185,7 @@ constants! {
     MATERIAL_SCHLICK MATERIAL_SMITH MATERIAL_ANISOTROPIC MATERIAL_NONLINEAR MATERIAL_COMPENSATE MATERIAL_ONE_SIDED MATERIAL_EMIT_ONE_SIDED MATERIAL_WARD_1992 MATERIAL_WARD_DUER MATERIAL_TRANSMISSIVE MATERIAL_BY_SIDE DISTRIBUTION_SHIFT ALBEDO_HEADER ALBEDO_KNOTS MAX_LEAVES
     DISTRIBUTION_BECKMANN DISTRIBUTION_GAUSSIAN DISTRIBUTION_TROWBRIDGE_REITZ DISTRIBUTION_PHONG
     EMITTER_TRIANGLE EMITTER_SPHERE EMITTER_LIGHT EMITTER_ENVIRONMENT EMITTER_ONE_SIDED EMITTER_TEXTURED
-    T_INFINITE
+    T_INFINITE PATH_BEHIND_SHADOWLESS
     TEXEL_SRGB8 TEXEL_LINEAR8 TEXEL_FLOAT
     WRAP_REPEAT WRAP_CLAMP WRAP_MIRROR
     MAGNIFY_NEAREST MAGNIFY_BILINEAR

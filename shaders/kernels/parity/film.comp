@@ -11,7 +11,6 @@
 void result_fixed(uint k, Fixed units) {
     result_u(k, units.low);
     result_u(k + 1u, units.high);
-    result_u(k + 2u, units.nan);
 }
 
 void main() {
@@ -30,17 +29,23 @@ void main() {
     case 4u: result2(0u, sample_2d(key, dimension)); break;
     case 5u: result_u(0u, dither_hash(key, dimension)); break;
     case 6u: result(0u, dither_lane(a, b)); break;
-    case 7u: result_fixed(0u, to_fixed(argument(0u), uintBitsToFloat(b & 0x7f800000u), argument(2u))); break;
+    case 7u:
+        result_fixed(0u, to_fixed(argument(0u), uintBitsToFloat(b & 0x7f800000u), argument(2u)));
+        result_u(2u, is_nan(argument(0u)) ? 1u : 0u);
+        break;
     case 8u:
         sum.low = uvec4(a);
         sum.high = uvec4(b);
-        add_fixed(sum, argument_u(4u), Fixed(argument_u(2u), argument_u(3u), 0u));
+        add_fixed(sum, argument_u(4u), Fixed(argument_u(2u), argument_u(3u)));
         result_u(0u, sum.low[argument_u(4u)]);
         result_u(1u, sum.high[argument_u(4u)]);
         break;
     case 9u:
-        result_fixed(0u, clamp_sample(a, argument_u(2u) - 100u));
-        result_fixed(3u, clamp_sample(a, b));
+        result_fixed(0u, clamp_sample(Fixed(a, b)));
+        sum = FilmSum(uvec4(b), uvec4(a));
+        result_u(4u, resolve_sample(sum, FilmSum(uvec4(a), uvec4(argument_u(2u) - 100u))));
+        result_u(2u, sum.low[2]);
+        result_u(3u, sum.high[2]);
         break;
     case 10u:
         s = spectrum_from_rgb(argument3(0u));

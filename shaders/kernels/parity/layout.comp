@@ -26,6 +26,7 @@ uvec4 fetch_header(uint at) { return heap[FIRST_WORD + at]; }
 uvec4 fetch_batch(uint at) { return heap[FIRST_WORD + at]; }
 #include "layout/header.glsl"
 layout(set = 0, binding = 0, scalar) readonly buffer HeaderBlock { SceneHeader header; };
+const bool SCENE_HAS_PASSING = true;
 uvec4 fetch_data(uint at) { return heap[at]; }
 uvec4 fetch_node(uint at) { return heap[FIRST_WORD + at]; }
 uvec4 fetch_triangle(uint at) { return heap[FIRST_WORD + at]; }
@@ -217,6 +218,7 @@ void store_constants() {
     constants[135] = SHADE_GROUP_MISSED;
     constants[136] = SCENE_HEADER_WORDS;
     constants[137] = BATCH_WORDS;
+    constants[138] = PATH_BEHIND_SHADOWLESS;
 }
 
 void main() {

@@ -3,13 +3,13 @@
 use super::{Bounce, Counters, Job, RenderError, Renderer, Watch};
 use crate::bake::SceneData;
 use crate::film::Film;
-use crate::layout::{AovPixel, Batch, FilmSum, INVALID, SHADOWS_FILTERED, SceneView, T_INFINITE};
-use crate::trace::traverse::{trace_any, trace_closest, trace_occluder};
-use crate::transport::film::{add_fixed, clamp_sample};
-use crate::transport::generate::generate;
+use crate::layout::{AovPixel, Batch, FilmSum, SceneView};
+use crate::trace::traverse::trace_closest;
+use crate::transport::Queues;
+use crate::transport::begin::begin_path;
+use crate::transport::film::resolve_sample;
 use crate::transport::shade::shade;
-use crate::transport::shadow::shade_shadow;
-use crate::transport::{Queues, add_contribution, count_limited};
+use crate::transport::shadow::trace_shadow;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -80,7 +80,8 @@ fn batch_of(job: &Job, sample: u32) -> Batch {
 /// Runs one sample to its end; its sum is left in the worker's queues. `bounces` records every step.
 fn run_sample(scene: &SceneView, batch: &Batch, slot: u32, worker: &mut Worker, mut bounces: Option<&mut Vec<Bounce>>) {
     worker.queues.sum = FilmSum::default();
-    worker.queues.paths.push(generate(scene, batch, slot));
+    let path = begin_path(scene, batch, slot, &mut worker.queues);
+    worker.queues.paths.push(path);
     while let Some(path) = worker.queues.paths.pop() {
         let hit = trace_closest(scene, &path.ray);
         worker.closest_rays += 1;
@@ -90,28 +91,9 @@ fn run_sample(scene: &SceneView, batch: &Batch, slot: u32, worker: &mut Worker, 
         shade(scene, &path, &hit, &mut worker.queues);
         while let Some(shadow) = worker.queues.shadows.pop() {
             worker.shadow_rays += 1;
-            if scene.header.shadows == SHADOWS_FILTERED {
-                shade_shadow(scene, &shadow, &trace_occluder(scene, &shadow.ray), &mut worker.queues);
-            } else if !trace_any(scene, &shadow.ray) {
-                let scale = scene.header.film_scale;
-                if shadow.limited != 0 {
-                    count_limited(&mut worker.queues);
-                }
-                add_contribution(&mut worker.queues, scale, shadow.slot, shadow.contribution, shadow.dither);
-            }
+            trace_shadow(scene, &shadow, &mut worker.queues);
         }
     }
-}
-
-/// Adds the sample in the worker's queues to its pixel.
-fn resolve_sample(worker: &mut Worker, pixel: &mut FilmSum) {
-    let mut clamped = 0;
-    for lane in 0..4 {
-        let units = clamp_sample(worker.queues.sum.low[lane as usize], worker.queues.sum.high[lane as usize]);
-        add_fixed(pixel, lane, units);
-        clamped |= units.nan;
-    }
-    worker.clamped_count += u64::from(clamped);
 }
 
 impl Renderer for CpuRenderer<'_> {
@@ -127,8 +109,7 @@ impl Renderer for CpuRenderer<'_> {
         let pixel_count = job.crop.width as usize * job.crop.height as usize;
         let mut sums = vec![FilmSum::default(); pixel_count];
         let want_aovs = scene.header.aovs != 0;
-        let miss = AovPixel { depth: T_INFINITE, object: INVALID, material: INVALID, ..AovPixel::default() };
-        let mut aovs = vec![miss; if want_aovs { pixel_count } else { 0 }];
+        let mut aovs = vec![AovPixel::default(); if want_aovs { pixel_count } else { 0 }];
         let tally = Tally::default();
         let tile = self.tile_pixels;
         let run_tile = |worker: &mut Worker, first: usize, sums: &mut [FilmSum], mut aovs: Option<&mut [AovPixel]>| {
@@ -142,7 +123,7 @@ impl Renderer for CpuRenderer<'_> {
                         worker.queues.aov = aovs[offset];
                     }
                     run_sample(&scene, &batch, (first + offset) as u32, worker, None);
-                    resolve_sample(worker, sum);
+                    worker.clamped_count += u64::from(resolve_sample(sum, &worker.queues.sum));
                     if let Some(aovs) = aovs.as_deref_mut() {
                         aovs[offset] = worker.queues.aov;
                     }

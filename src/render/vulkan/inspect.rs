@@ -23,6 +23,8 @@ pub fn run(context: &mut Context, queues: &Queues, x: u32, y: u32, sample: u32) 
     let control = queues.fresh_control();
     context.submit("inspecting a sample", |r| {
         r.clear(&queues.aovs, queues.aovs.size());
+        // Words that kernels of this scene do not store are told as 0.
+        r.clear(&queues.chunk, queues.chunk.size());
         r.update(&queues.control, 0, bytemuck::bytes_of(&control));
         r.barrier();
         queues.record_chunk_limit(r, queues.plan.chunk);

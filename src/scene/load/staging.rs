@@ -242,7 +242,7 @@ fn add_ground(scene: &mut Scene, bounds: &Bounds) {
             translation: centre,
         }),
         material: Some(MaterialId(scene.materials.len() as u32 - 1)),
-        casts_shadow: Some(false),
+        casts_shadow: None,
         shading: None,
     });
 }

@@ -6,7 +6,7 @@ use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, hash_u32, s
 use crate::shading::spectrum::{
     spectrum_flush, spectrum_from_rgb, spectrum_luminance, spectrum_max, spectrum_to_rgb, spectrum_zero,
 };
-use crate::transport::film::{Fixed, add_fixed, clamp_sample, dither_lane, to_fixed};
+use crate::transport::film::{Fixed, add_fixed, clamp_sample, dither_lane, is_nan, resolve_sample, to_fixed};
 use crate::verify::inputs::Domain::{self, Below, Bits, Exponent, Range};
 
 /// sampling, strata, seed, pixel, sample, path id, dimension.
@@ -69,12 +69,12 @@ pub const FAMILY: Family = Family {
             },
         },
         Twin {
-            name: "to_fixed",
+            name: "to_fixed is_nan",
             domains: &[Bits, Exponent(-40, 40), Range(0.0, 1.0)],
             run: |i, o| {
                 let scale = f32::from_bits(i.u(1) & 0x7f80_0000);
                 let fixed = to_fixed(i.f(0), scale, i.f(2));
-                o.u(fixed.low).u(fixed.high).u(fixed.nan);
+                o.u(fixed.low).u(fixed.high).u(u32::from(is_nan(i.f(0))));
             },
         },
         Twin {
@@ -82,18 +82,21 @@ pub const FAMILY: Family = Family {
             domains: &[Below(0), Below(0), Below(0), Below(0), Below(4)],
             run: |i, o| {
                 let mut sum = FilmSum { low: [i.u(0); 4], high: [i.u(1); 4] };
-                add_fixed(&mut sum, i.u(4), Fixed { low: i.u(2), high: i.u(3), nan: 0 });
+                add_fixed(&mut sum, i.u(4), Fixed { low: i.u(2), high: i.u(3) });
                 let lane = i.u(4) as usize;
                 o.u(sum.low[lane]).u(sum.high[lane]);
             },
         },
         Twin {
-            name: "clamp_sample",
+            name: "clamp_sample resolve_sample",
             domains: &[Below(0), Below(0), Below(200)],
             run: |i, o| {
-                let near = clamp_sample(i.u(0), i.u(2).wrapping_sub(100));
-                let any = clamp_sample(i.u(0), i.u(1));
-                o.u(near.low).u(near.high).u(near.nan).u(any.low).u(any.high).u(any.nan);
+                let any = clamp_sample(Fixed { low: i.u(0), high: i.u(1) });
+                // Near the limit.
+                let finished = FilmSum { low: [i.u(0); 4], high: [i.u(2).wrapping_sub(100); 4] };
+                let mut pixel = FilmSum { low: [i.u(1); 4], high: [i.u(0); 4] };
+                let clamped = resolve_sample(&mut pixel, &finished);
+                o.u(any.low).u(any.high).u(pixel.low[2]).u(pixel.high[2]).u(clamped);
             },
         },
         Twin {
