@@ -19,3 +19,4 @@ pub mod trace;
 #[cfg_attr(not(test), deny(clippy::disallowed_methods, clippy::disallowed_types))]
 pub mod transport;
 pub mod verify;
+pub mod watch;

@@ -4,12 +4,14 @@ mod common;
 
 use common::*;
 use glam::{DAffine3, DVec3, Vec3};
-use gonio::bake::{BakeError, SceneData, Watch, bake, bake_watched};
+use gonio::bake::{BakeError, Baker, SceneData, bake, bake_watched};
 use gonio::layout::*;
 use gonio::scene::*;
 // Not the records of the same names.
 use gonio::scene::{Light, Material, Texture};
 use gonio::trace::traverse::{stack_used, trace_closest};
+use gonio::watch::Watch;
+use std::sync::Arc;
 
 fn byte(words: [u32; 2], slot: u32) -> u32 {
     (words[(slot / 4) as usize] >> (8 * (slot % 4))) & 255
@@ -35,7 +37,7 @@ fn check_tree(
     bounds: &dyn Fn(u32) -> (DVec3, DVec3),
     seen: &mut Vec<u32>,
 ) -> (DVec3, DVec3) {
-    let node = &data.nodes[index as usize];
+    let node = &data.shapes.nodes[index as usize];
     let inner_mask = node.exponents_imask >> 24;
     let mut all = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for slot in 0..8 {
@@ -66,7 +68,7 @@ fn check_tree(
 /// Checks the top level and the trees of all instances.
 fn check_scene(data: &SceneData) {
     let world = |place: u32| {
-        let instance = &data.instances[data.top_instances[place as usize] as usize];
+        let instance = &data.instances[data.shapes.top_instances[place as usize] as usize];
         let points: Vec<DVec3> = if instance.kind == KIND_SPHERE {
             // Points of the sphere in object space.
             let mut random = Random::new(1);
@@ -77,7 +79,7 @@ fn check_scene(data: &SceneData) {
                 data,
                 instance.root,
                 instance.root,
-                &|p| triangle_bounds(&data.triangles[p as usize]),
+                &|p| triangle_bounds(&data.shapes.triangles[p as usize]),
                 &mut seen,
             );
             let mut once = seen.clone();
@@ -85,7 +87,7 @@ fn check_scene(data: &SceneData) {
             once.dedup();
             assert_eq!(once.len(), seen.len(), "a triangle stands in two leaves");
             let corners = |&p: &u32| {
-                let t = &data.triangles[p as usize];
+                let t = &data.shapes.triangles[p as usize];
                 [t.v0.as_dvec3(), t.v1.as_dvec3(), t.v2.as_dvec3()]
             };
             seen.iter().flat_map(corners).collect()
@@ -147,11 +149,11 @@ fn crowd() -> Mesh {
 #[test]
 fn a_mesh_of_several_parts_loses_nothing() {
     let data = bake(&scene_of(vec![crowd()])).expect("bakes");
-    assert!(data.triangles.len() > 1 << 16, "{}", data.triangles.len());
-    let mut found: Vec<u32> = data.triangles.iter().map(|triangle| triangle.primitive).collect();
+    assert!(data.shapes.triangles.len() > 1 << 16, "{}", data.shapes.triangles.len());
+    let mut found: Vec<u32> = data.shapes.triangles.iter().map(|triangle| triangle.primitive).collect();
     found.sort_unstable();
     found.dedup();
-    assert_eq!(found.len(), data.triangles.len());
+    assert_eq!(found.len(), data.shapes.triangles.len());
     check_scene(&data);
 }
 
@@ -165,28 +167,32 @@ fn any_number_of_threads_bakes_the_same_arrays() {
     let one = baked(1);
     for threads in [2, 5] {
         let other = baked(threads);
+        assert_eq!(one.digest(), other.digest());
+        let (one, other) = (&one.shapes, &other.shapes);
         assert!(one.nodes == other.nodes && one.triangles == other.triangles, "{threads} threads");
         assert!(one.faces == other.faces && one.vertices == other.vertices, "{threads} threads");
-        assert_eq!((one.stack_depth, one.digest()), (other.stack_depth, other.digest()));
+        assert_eq!(one.stack_depth, other.stack_depth);
     }
 }
 
 #[test]
 fn a_bake_that_is_to_stop_stops_and_one_that_is_watched_tells_of_every_triangle_twice() {
-    use std::sync::atomic::{AtomicU64, Ordering};
+    use std::sync::atomic::{AtomicI64, Ordering};
     let scene = scene_of(vec![crowd()]);
-    let told = AtomicU64::new(0);
-    let advance = |count| {
-        told.fetch_add(count, Ordering::Relaxed);
-    };
-    let data = bake_watched(&scene, &Watch { abort: &|| false, advance: &advance }).expect("bakes");
+    let watch = Watch::default();
+    let data = bake_watched(&scene, &watch).expect("bakes");
     // And of its one instance.
-    assert_eq!(told.swap(0, Ordering::Relaxed), 2 * (data.triangles.len() as u64 + 1));
-    let abort = || told.load(Ordering::Relaxed) > 20_000;
-    let stopped = bake_watched(&scene, &Watch { abort: &abort, advance: &advance });
+    assert_eq!(watch.done(), 2 * (data.shapes.triangles.len() as u64 + 1));
+    let told = AtomicI64::new(0);
+    let tell = |steps| {
+        told.fetch_add(steps, Ordering::Relaxed);
+    };
+    let asked = || told.load(Ordering::Relaxed) > 20_000;
+    let watch = Watch::default().asking(&asked).telling(&tell);
+    let stopped = bake_watched(&scene, &watch);
     assert!(matches!(stopped, Err(BakeError::Aborted)), "{stopped:?}");
     // Asked between pieces of work, so it may take a few more, but not all.
-    assert!(told.into_inner() < 2 * data.triangles.len() as u64);
+    assert!(watch.done() < 2 * data.shapes.triangles.len() as u64);
 }
 
 #[test]
@@ -199,7 +205,7 @@ fn no_ray_needs_more_stack_than_baking_says() {
             scene.objects.push(object(if i % 5 == 0 { Geometry::Sphere } else { Geometry::Mesh(MeshId(0)) }, shift));
         }
         let data = bake(&scene).expect("bakes");
-        assert!(data.stack_depth <= STACK_SIZE);
+        assert!(data.shapes.stack_depth <= STACK_SIZE);
         let mut worst = 0;
         for i in 0..3000 {
             // Every other ray runs up the cascade, from its narrow end, inside the cone of its clusters.
@@ -208,9 +214,9 @@ fn no_ray_needs_more_stack_than_baking_says() {
             let up = ray(cone * -1e-3, cone);
             worst = worst.max(stack_used(&data.view(), if i % 2 == 0 { &aimed } else { &up }));
         }
-        assert!(worst <= data.stack_depth, "{worst} of {}", data.stack_depth);
+        assert!(worst <= data.shapes.stack_depth, "{worst} of {}", data.shapes.stack_depth);
         // The bound is no empty promise: rays come close to it.
-        assert!(worst * 2 >= data.stack_depth, "{worst} of {}", data.stack_depth);
+        assert!(worst * 2 >= data.shapes.stack_depth, "{worst} of {}", data.shapes.stack_depth);
     }
 }
 
@@ -220,7 +226,7 @@ fn an_empty_scene_bakes_and_is_missed() {
     scene.meshes.push(Mesh { name: "nothing".into(), ..Mesh::default() });
     scene.objects.push(object(Geometry::Mesh(MeshId(0)), Transform::default()));
     let data = bake(&scene).expect("bakes");
-    assert_eq!((data.header.top_root, data.header.instance_count, data.stack_depth), (INVALID, 0, 0));
+    assert_eq!((data.header.top_root, data.header.instance_count, data.shapes.stack_depth), (INVALID, 0, 0));
     assert_eq!(trace_closest(&data.view(), &ray(Vec3::ZERO, Vec3::X)).instance, INVALID);
 }
 
@@ -239,10 +245,10 @@ fn what_cannot_be_hit_is_dropped_with_one_warning_and_keeps_its_number() {
     let data = bake(&scene_of(vec![mesh])).expect("bakes");
     let warning = "mesh \"bad\": dropped triangles: 2 with coordinates that are not finite and 2 without area";
     assert_eq!(data.warnings, [warning]);
-    assert_eq!((data.triangles.len(), data.faces.len()), (1, 5));
+    assert_eq!((data.shapes.triangles.len(), data.shapes.faces.len()), (1, 5));
     let hit = trace_closest(&data.view(), &ray(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z));
     assert!((hit.t - 1.0).abs() < 1e-6 && hit.primitive == 4, "{hit:?}");
-    assert!(data.vertices.iter().all(|v| v.position.is_finite() && v.normal.is_finite()));
+    assert!(data.shapes.vertices.iter().all(|v| v.position.is_finite() && v.normal.is_finite()));
 }
 
 #[test]
@@ -254,7 +260,7 @@ fn instances_share_what_they_show() {
         scene.objects.push(object(Geometry::Mesh(MeshId(0)), shift));
     }
     let data = bake(&scene).expect("bakes");
-    let sizes = |d: &SceneData| (d.triangles.len(), d.faces.len(), d.vertices.len());
+    let sizes = |d: &SceneData| (d.shapes.triangles.len(), d.shapes.faces.len(), d.shapes.vertices.len());
     assert_eq!(sizes(&data), sizes(&alone));
     assert!(data.instances.iter().all(|i| i.root == data.instances[0].root));
 }
@@ -340,7 +346,7 @@ fn lecture_intensities_are_multiplied_by_pi() {
         slide: None,
     };
     scene.lights = vec![light(IntensityUnit::Lecture), light(IntensityUnit::Radiometric)];
-    let lights = bake(&scene).expect("bakes").lights;
+    let lights = bake(&scene).expect("bakes").lights.clone();
     assert_eq!(lights[0].intensity, Vec3::new(1.0, 2.0, 4.0) * std::f32::consts::PI);
     assert_eq!(lights[1].intensity, Vec3::new(1.0, 2.0, 4.0));
     assert_eq!((lights[1].direction, lights[1].kind, lights[1].casts_shadow), (Vec3::NEG_Y, LIGHT_SPOT, 1));
@@ -402,4 +408,53 @@ fn rays_have_a_level_for_each_depth_only_where_they_branch() {
     assert_eq!(levels(&scene), 1, "a mirror");
     scene.materials[0].model = Model::Dielectric { eta: 1.5, absorption: Vec3::ZERO };
     assert_eq!(levels(&scene), 8, "glass");
+}
+
+#[test]
+fn scenes_that_differ_in_camera_film_integrator_or_materials_share_their_shapes() {
+    let mut scene = scene_of(vec![globe(8)]);
+    scene.objects.push(object(Geometry::Sphere, Transform::translate(Vec3::X)));
+    let mut baker = Baker::default();
+    let first = baker.bake(&scene, &Watch::default()).expect("bakes");
+    let mut other = scene.clone();
+    (other.film.width, other.camera.eye) = (99, Vec3::new(1.0, 2.0, 3.0));
+    other.settings.integrator = Integrator::Path;
+    other.objects[0].casts_shadow = Some(false);
+    other.materials.iter_mut().for_each(|material| material.color = Rgb::splat(0.25));
+    let second = baker.bake(&other, &Watch::default()).expect("bakes");
+    assert!(Arc::ptr_eq(&first.shapes, &second.shapes), "baked again");
+    assert_eq!(second.times.binary_s, 0.0, "the time was spent once");
+    // As if it had been baked alone.
+    assert_eq!(second.digest(), bake(&other).expect("bakes").digest());
+    assert_ne!(second.digest(), first.digest());
+    // Each of these is another shape.
+    let changes: [fn(&mut Scene); 6] = [
+        |scene| scene.objects[0].transform = Transform::translate(Vec3::Z),
+        |scene| scene.objects.truncate(1),
+        |scene| scene.meshes[0].positions[0] *= 2.0,
+        |scene| scene.meshes[0].uvs = vec![glam::Vec2::ONE; scene.meshes[0].positions.len()],
+        |scene| scene.meshes[0].triangles.truncate(5),
+        |scene| scene.meshes[0].face_materials = vec![MaterialId(0); scene.meshes[0].triangles.len()],
+    ];
+    for (number, change) in changes.into_iter().enumerate() {
+        let mut changed = scene.clone();
+        change(&mut changed);
+        let mut baker = Baker::after(&scene, &first);
+        let baked = baker.bake(&changed, &Watch::default()).expect("bakes");
+        assert!(!Arc::ptr_eq(&first.shapes, &baked.shapes), "change {number}");
+        assert_eq!(baked.digest(), bake(&changed).expect("bakes").digest(), "change {number}");
+    }
+}
+
+#[test]
+fn keeping_auxiliary_values_changes_no_digest_and_leaving_the_background_out_does() {
+    let scene = scene_of(vec![globe(4)]);
+    let digest = |change: fn(&mut Scene)| {
+        let mut scene = scene.clone();
+        change(&mut scene);
+        bake(&scene).expect("bakes").digest()
+    };
+    let plain = digest(|_| ());
+    assert_eq!(digest(|scene| scene.settings.aovs = true), plain);
+    assert_ne!(digest(|scene| scene.settings.transparent = true), plain);
 }

@@ -399,10 +399,10 @@ fn each_parameter_takes_its_texture() {
     ];
     let eye = ray(Vec3::new(0.1, 0.2, 3.0), Vec3::NEG_Z);
     for (parameter, texel) in cases {
-        let mut data = textured(Some(square(|c| c)), Transform::default(), constant(texel), parameter, 2.0);
+        let data = textured(Some(square(|c| c)), Transform::default(), constant(texel), parameter, 2.0);
         let rough = Record { m0: 0.25, m1: 0.125, m0_v: 0.5, m1_v: 0.75, ..data.materials[0] };
         let plain = Record { specular_color: Vec3::ONE, emission: Vec3::ONE, ..rough };
-        data.materials[0] = plain;
+        let data = data.altered(|data| data.materials[0] = plain);
         let (got, ..) = seen(&data, &eye);
         let mut want = plain;
         let factor = Vec3::new(1.0, 0.5, 0.25);

@@ -295,7 +295,7 @@ fn own_camera_and_lights_are_kept() {
         shift: Vec2::ZERO,
         mirrored: false,
     };
-    scene.camera = camera;
+    (scene.camera, scene.has_camera) = (camera, true);
     staging::stage(&mut scene);
     assert_eq!(scene.camera, camera);
     assert_eq!(scene.lights.len(), 2);

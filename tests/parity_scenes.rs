@@ -6,13 +6,11 @@ mod device;
 mod scenes;
 
 use gonio::bake::{SceneData, bake};
-use gonio::film::Film;
 use gonio::render::cpu::CpuRenderer;
 use gonio::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
-use gonio::render::{Job, Renderer, Watch};
 use gonio::scene::Scene;
 use gonio::scene::load::{self, Panels};
-use scenes::{Take, assert_same, prepare, render, render_cpu, taken};
+use scenes::{Take, accumulate, assert_same, prepare, render, render_cpu, taken};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -172,13 +170,6 @@ fn another_seed_is_another_picture() {
     let (scene, data) = first_light(take);
     let (other_scene, other_data) = first_light(Take { seed: 1, ..take });
     assert_same(&render_cpu(&scene, &data), &render_cpu(&other_scene, &other_data), "two seeds");
-}
-
-/// Adds samples of the whole frame to a film.
-fn accumulate(renderer: &mut dyn Renderer, film: &mut Film, samples: std::ops::Range<u32>) {
-    let abort = std::sync::atomic::AtomicBool::new(false);
-    let job = Job { crop: film.crop(), samples };
-    renderer.accumulate(&job, film, &Watch { abort: &abort, advance: &|_| {} }).unwrap();
 }
 
 /// Compares the scene after 1, 4 and 16 samples, through both fetch paths; false without a device.

@@ -172,15 +172,14 @@ fn one_light_gives_one_mean_as_samples_of_the_surface_of_the_light_of_both_and_a
     let scene = lit_floor(Some((light, glow(2.0))), 1);
     let both = bake(&scene).unwrap();
     // Without emitters every direction comes from the surface, and counts in full.
-    let mut surface = both.clone();
-    surface.header.emitter_count = 0;
-    surface.instances.iter_mut().for_each(|instance| instance.light_density = 0.0);
+    let surface = both.altered(|data| {
+        data.header.emitter_count = 0;
+        data.instances.iter_mut().for_each(|instance| instance.light_density = 0.0);
+    });
     // A surface that is never found by chance: the light's samples count as far as the heuristic lets them; what they leave
     // is the rest of the first picture.
-    let mut light_only = both.clone();
-    light_only.materials[1].emission = Vec3::ZERO;
-    let mut surface_only = both.clone();
-    surface_only.header.emitter_count = 0;
+    let light_only = both.altered(|data| data.materials[1].emission = Vec3::ZERO);
+    let surface_only = both.altered(|data| data.header.emitter_count = 0);
     let (both, surface) = (mean_of(&scene, &both, 1), mean_of(&scene, &surface, 1));
     assert_equal_means(both, surface, 0.0, "both ways, and the surface's alone");
     let (light, rest) = (mean_of(&scene, &light_only, 1), mean_of(&scene, &surface_only, 1));
@@ -338,17 +337,14 @@ fn absorption_follows_beer_inside_glass_of_index_one() {
 
 #[test]
 fn a_clamp_limits_scattered_light_only_and_is_counted() {
-    use gonio::render::{Job, Renderer, Watch, cpu::CpuRenderer};
+    use gonio::render::cpu::CpuRenderer;
     let light = object(Geometry::Sphere, Transform::translate(Vec3::Y * 3.0));
     let mut scene = lit_floor(Some((light, glow(2.0))), 1);
     let free = mean(&scene);
     scene.settings.clamp = Some(0.01);
     let data = bake(&scene).unwrap();
     let mut film = scenes::film(&scene, &data);
-    let abort = std::sync::atomic::AtomicBool::new(false);
-    let job = Job { crop: film.crop(), samples: 0..32 };
-    let watch = Watch { abort: &abort, advance: &|_| {} };
-    let counters = CpuRenderer::new(&data, None).unwrap().accumulate(&job, &mut film, &watch).unwrap();
+    let counters = scenes::accumulate(&mut CpuRenderer::new(&data, None).unwrap(), &mut film, 0..32);
     assert!(counters.limited > 0);
     assert_eq!(film.limited_count(), counters.limited, "the film keeps what was counted");
     // Two contributions a sample at most: the light's and the surface's.
@@ -362,7 +358,7 @@ fn a_clamp_limits_scattered_light_only_and_is_counted() {
 
 #[test]
 fn a_clamp_counts_only_what_reaches_the_film() {
-    use gonio::render::{Job, Renderer, Watch, cpu::CpuRenderer};
+    use gonio::render::cpu::CpuRenderer;
     // A point light that everything would limit, behind a wall: nothing of it is seen.
     let mut scene = lit_floor(None, 1);
     scene.lights = vec![lamp(LightKind::Point { position: Vec3::Y * 3.0 }, 50.0)];
@@ -370,9 +366,7 @@ fn a_clamp_counts_only_what_reaches_the_film() {
     let limited = |scene: &Scene| {
         let data = bake(scene).unwrap();
         let mut film = scenes::film(scene, &data);
-        let abort = std::sync::atomic::AtomicBool::new(false);
-        let (job, watch) = (Job { crop: film.crop(), samples: 0..4 }, Watch { abort: &abort, advance: &|_| {} });
-        CpuRenderer::new(&data, None).unwrap().accumulate(&job, &mut film, &watch).unwrap();
+        scenes::accumulate(&mut CpuRenderer::new(&data, None).unwrap(), &mut film, 0..4);
         film.limited_count()
     };
     assert_eq!(limited(&scene), 4 * 400, "each sample's only contribution");

@@ -102,6 +102,8 @@ fn a_scene_without_settings_has_the_documented_defaults() {
         rr_depth: 5,
         clamp: None,
         hide_emitters: false,
+        transparent: false,
+        aovs: false,
         shadows: Shadows::Opaque,
         shading: Shading::Phong,
     };
@@ -133,6 +135,8 @@ fn render_film_and_background_keys_arrive() {
         rr_depth: 2,
         clamp: Some(10.0),
         hide_emitters: false,
+        transparent: false,
+        aovs: false,
         shadows: Shadows::Off,
         shading: Shading::Gouraud,
     };

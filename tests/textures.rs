@@ -1,7 +1,7 @@
 //! Image textures: texel centres, wrapping, exact weights, formats, and coordinates at the edge.
 
 use glam::{Vec2, Vec3};
-use gonio::bake::SceneData;
+use gonio::bake::SceneArrays;
 use gonio::bake::srgb::srgb_table;
 use gonio::layout::{
     MAGNIFY_BILINEAR, MAGNIFY_NEAREST, TEXEL_FLOAT, TEXEL_LINEAR8, TEXEL_SRGB8, Texture, WRAP_CLAMP, WRAP_MIRROR,
@@ -10,8 +10,8 @@ use gonio::layout::{
 use gonio::shading::texture::sample_texture;
 
 /// Stored 4 x 2, from the top row down: value 10 * row from the bottom + column in lane 0, one word before it unused.
-fn grid(magnify: u32, wrap: u32) -> (SceneData, Texture) {
-    let mut scene = SceneData { tables: srgb_table(), texels: vec![0xdead_beef], ..Default::default() };
+fn grid(magnify: u32, wrap: u32) -> (SceneArrays, Texture) {
+    let mut scene = SceneArrays { tables: srgb_table(), texels: vec![0xdead_beef], ..Default::default() };
     for row in [1u32, 0] {
         for column in 0..4u32 {
             let value = (10 * row + column) as f32;
@@ -128,7 +128,7 @@ fn scale_and_offset_apply_before_wrapping() {
 
 #[test]
 fn bytes_are_decoded_by_their_format() {
-    let mut scene = SceneData { tables: srgb_table(), ..Default::default() };
+    let mut scene = SceneArrays { tables: srgb_table(), ..Default::default() };
     scene.texels = vec![u32::from_le_bytes([0, 128, 255, 51])];
     let mut texture =
         Texture { width: 1, height: 1, format: TEXEL_SRGB8, scale_u: 1.0, scale_v: 1.0, ..Default::default() };
@@ -144,7 +144,7 @@ fn bytes_are_decoded_by_their_format() {
 
 #[test]
 fn an_even_image_stays_exactly_even_under_bilinear_reading() {
-    let mut scene = SceneData { tables: srgb_table(), ..Default::default() };
+    let mut scene = SceneArrays { tables: srgb_table(), ..Default::default() };
     scene.texels = vec![u32::from_le_bytes([77, 200, 3, 129]); 15];
     let texture = Texture {
         width: 5,

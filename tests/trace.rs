@@ -69,7 +69,7 @@ fn compare(scene: &Scene, rays: impl Iterator<Item = Ray>) -> u32 {
         assert_eq!(found, expected, "{ray:?}");
         assert_eq!(found.t.to_bits(), expected.t.to_bits());
         assert_eq!(trace_any(&view, &ray), brute_force(&view, &ray, true).instance != INVALID, "{ray:?}");
-        assert!(stack_used(&view, &ray) <= data.stack_depth, "{ray:?}");
+        assert!(stack_used(&view, &ray) <= data.shapes.stack_depth, "{ray:?}");
         hits += u32::from(found.instance != INVALID);
     }
     hits
@@ -95,7 +95,7 @@ fn wide_registers_visit_what_narrow_ones_do() {
     for _ in 0..2000 {
         let ray = random.ray(2.0);
         let level = prepare_ray(ray.origin, ray.direction);
-        for node in &data.nodes {
+        for node in &data.shapes.nodes {
             let widening = axis_slack(&level, root_reach(node, &level) * SLACK) * NODE_SLACKS;
             let [wide, narrow] = [
                 approx_intersect_node(wide, node, &level, widening, ray.t_max),

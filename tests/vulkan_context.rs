@@ -3,14 +3,17 @@
 #[path = "common/device.rs"]
 mod device;
 
-use gonio::bake::SceneData;
+use gonio::bake::shapes::Shapes;
+use gonio::bake::{SceneArrays, SceneData};
 use gonio::layout::{Node, PathState, SceneHeader, Triangle};
+use gonio::render::RenderError;
 use gonio::render::vulkan::{
     Binding, BindingKind, Bound, BufferSpec, FetchChoice, Instance, Place, STORAGE_FETCH_STORAGE_BUFFERS, SceneBuffers,
-    TEXEL_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_TEXEL_BUFFERS, VulkanError, WORKGROUP, bindings,
+    TEXEL_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_TEXEL_BUFFERS, WORKGROUP, bindings,
 };
 use gonio::shaders::{self, Fetch};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Bytes that differ from their neighbours and from page to page.
 fn pattern(length: usize) -> Vec<u8> {
@@ -91,7 +94,7 @@ fn an_array_larger_than_the_device_allows_is_an_error_with_name_and_size() {
     };
     let size = context.info().limits.allocation + 16;
     let Err(error) = context.buffer("vertices of the moon", size, Place::Device) else { panic!("allocated {size}") };
-    let VulkanError::Device(text) = error else { panic!("{error:?}") };
+    let RenderError::TooLarge(text) = error else { panic!("{error:?}") };
     assert!(text.starts_with(&format!("cannot allocate vertices of the moon ({size} bytes): ")), "{text}");
 }
 
@@ -112,17 +115,13 @@ fn a_storage_buffer_beyond_the_limit_is_an_error_that_names_it() {
 }
 
 fn scene(nodes: usize, triangles: usize, texels: usize) -> SceneData {
-    let mut data = SceneData {
-        nodes: counted(nodes),
-        triangles: counted(triangles),
-        top_instances: counted(3),
-        texels: counted(texels),
-        ..SceneData::default()
-    };
+    let shapes =
+        Shapes { nodes: counted(nodes), triangles: counted(triangles), top_instances: counted(3), ..Shapes::default() };
+    let mut data = SceneArrays { shapes: Arc::new(shapes), texels: counted(texels), ..SceneArrays::default() };
     data.header.first_top_instance = 2;
     data.header.first_texel = 3;
     data.header.first_table = 3 + texels.div_ceil(4) as u32;
-    data
+    data.into()
 }
 
 #[test]
@@ -140,10 +139,13 @@ fn a_scene_is_cut_into_pages_whose_bytes_in_a_row_are_its_arrays() {
             let pages = buffers.pages(set).to_vec();
             pages.iter().flat_map(|page| context.download::<u8>(page, 0, page.size() as usize).unwrap()).collect()
         };
-        assert!(read(0) == bytemuck::cast_slice::<Node, u8>(&data.nodes), "nodes");
-        assert!(read(1) == bytemuck::cast_slice::<Triangle, u8>(&data.triangles), "triangles");
+        assert!(read(0) == bytemuck::cast_slice::<Node, u8>(&data.shapes.nodes), "nodes");
+        assert!(read(1) == bytemuck::cast_slice::<Triangle, u8>(&data.shapes.triangles), "triangles");
         let heap = read(2);
-        assert!(heap[32..44] == *bytemuck::cast_slice::<u32, u8>(&data.top_instances), "instances of the top level");
+        assert!(
+            heap[32..44] == *bytemuck::cast_slice::<u32, u8>(&data.shapes.top_instances),
+            "instances of the top level"
+        );
         assert!(heap[48..4048] == *bytemuck::cast_slice::<u32, u8>(&data.texels), "texels");
     }
 }
@@ -169,7 +171,7 @@ fn a_scene_beyond_eight_pages_is_refused_with_array_size_and_limit() {
     };
     let text = error.to_string();
     let reason = "BVH nodes take 8240 bytes; 8 pages of this device hold 8192 (1024 bytes each at most)";
-    assert!(matches!(error, VulkanError::Device(_)) && text.contains(reason), "{text}");
+    assert!(matches!(error, RenderError::TooLarge(_)) && text.contains(reason), "{text}");
 }
 
 #[test]
@@ -258,5 +260,5 @@ fn a_machine_without_a_loader_is_told_apart() {
     let Err(error) = Instance::with_loader(Some(Path::new("no-such-folder/libvulkan.so")), false) else {
         panic!("opened a library that is not there");
     };
-    assert!(matches!(error, VulkanError::NoLoader(_)), "{error:?}");
+    assert!(matches!(&error, RenderError::NoDevice(text) if text.contains("no Vulkan loader")), "{error:?}");
 }

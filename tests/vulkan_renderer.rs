@@ -10,9 +10,9 @@ use gonio::film::{Film, FilmSpec, Rect};
 use gonio::layout::INVALID;
 use gonio::render::cpu::CpuRenderer;
 use gonio::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
-use gonio::render::{Bounce, Counters, Job, RenderError, Renderer, Watch};
+use gonio::render::{Bounce, Counters, Job, Pass, RenderError, Renderer};
 use gonio::scene::{Scene, load};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use gonio::watch::Watch;
 
 /// Every way a path can go: mirror, glass, pane, two lights with shadows, a mesh, a sphere, the background.
 const SCENE: &str = r#"
@@ -96,9 +96,9 @@ fn baked(text: &str, aovs: bool) -> (Scene, SceneData) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, text).unwrap();
-    let scene = load::load(&path, &[]).unwrap();
-    let mut data = bake(&scene).unwrap();
-    data.header.aovs = u32::from(aovs);
+    let mut scene = load::load(&path, &[]).unwrap();
+    scene.settings.aovs = aovs;
+    let data = bake(&scene).unwrap();
     (scene, data)
 }
 
@@ -137,16 +137,14 @@ fn renderer(data: &SceneData, options: VulkanOptions) -> Option<Validated<Vulkan
 }
 
 fn run(renderer: &mut dyn Renderer, jobs: &[Job], film: &mut Film) -> Counters {
-    let abort = AtomicBool::new(false);
-    let mut total = Counters::default();
+    let (mut total, mut pass) = (Counters::default(), Pass::default());
     for job in jobs {
-        let finished = AtomicU64::new(0);
-        let advance = |samples| {
-            finished.fetch_add(samples, Ordering::Relaxed);
-        };
-        total += renderer.accumulate(job, film, &Watch { abort: &abort, advance: &advance }).unwrap();
+        let watch = Watch::default();
+        renderer.render(job, &watch, &mut pass).unwrap();
+        pass.add_to(job, film);
+        total += pass.counters;
         let expected = job.crop.area() as u64 * job.samples.len() as u64;
-        assert_eq!(finished.into_inner(), expected, "samples reported for {job:?}");
+        assert_eq!(watch.done(), expected, "samples reported for {job:?}");
     }
     total
 }
@@ -201,9 +199,11 @@ fn the_local_integrator_gives_the_cpu_backends_film() {
 
 #[test]
 fn an_empty_scene_is_its_background_also_in_bands() {
-    let (scene, mut data) = baked(SCENE, true);
-    (data.nodes, data.triangles, data.instances, data.top_instances) = Default::default();
-    (data.header.top_root, data.header.instance_count) = (INVALID, 0);
+    let (scene, data) = baked(SCENE, true);
+    let data = data.altered(|data| {
+        (data.shapes, data.instances) = Default::default();
+        (data.header.top_root, data.header.instance_count) = (INVALID, 0);
+    });
     compare(&data, &scene, VulkanOptions::default(), &[whole(0..2)]);
     // A film cut into bands of four rows or fewer.
     let page_limit = Some(1 << 13);
@@ -226,12 +226,11 @@ fn every_bounce_is_inspected_as_on_the_cpu() {
 
 #[test]
 fn an_aborted_job_says_so() {
-    let (scene, data) = baked(SCENE, false);
+    let (_, data) = baked(SCENE, false);
     let Some(mut vulkan) = renderer(&data, VulkanOptions::default()) else { return };
-    let abort = AtomicBool::new(true);
-    let job = whole(0..1);
-    let result =
-        vulkan.accumulate(&job, &mut film(&scene, &data, job.crop), &Watch { abort: &abort, advance: &|_| () });
+    let watch = Watch::default();
+    watch.cancel();
+    let result = vulkan.render(&whole(0..1), &watch, &mut Pass::default());
     assert!(matches!(result, Err(RenderError::Aborted)), "{result:?}");
 }
 

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use glam::{Vec2, Vec3};
-use gonio::bake::SceneData;
 use gonio::bake::filter::{filter_table, filter_value};
+use gonio::bake::{SceneArrays, SceneData};
 use gonio::layout::{FILTER_BOX, FILTER_KNOTS, FILTER_TABLE, FILTER_TENT, SAMPLER_INDEPENDENT};
 use gonio::scene::settings::Filter;
 use gonio::shading::filter::{sample_filter, sample_tent};
@@ -129,13 +129,13 @@ proptest! {
 
 fn scene(filter: &Filter) -> SceneData {
     let baked = filter_table(filter);
-    let mut data = SceneData { tables: vec![f32::NAN; 5], ..SceneData::default() };
+    let mut data = SceneArrays { tables: vec![f32::NAN; 5], ..SceneArrays::default() };
     data.header.filter_kind = baked.kind;
     data.header.filter_radius = baked.radius;
     data.header.filter_norm = baked.norm;
     data.header.filter_table = 5;
     data.tables.extend(baked.table);
-    data
+    data.into()
 }
 
 const FILTERS: [Filter; 11] = [

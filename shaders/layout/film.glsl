@@ -9,6 +9,9 @@ struct FilmSum {
     uvec4 high;
 };
 
+// Binary digits after the point of a film's sums.
+const uint FRACTION_BITS = 22u;
+
 // Auxiliary values of one pixel. 80 bytes.
 struct AovPixel {
     // Sums of the first hit's shading normal (world) in lanes 0-2; lane 3 unused. Scale 2^22.

@@ -11,7 +11,7 @@
 
 // The table's value at a cosine (clamped to 0..1), linear between the knots. `first`: first float of the header.
 float albedo_at(uint first, float cos_theta) {
-    float last = 63.0;
+    float last = float(ALBEDO_KNOTS - 1u);
     float x = last * sqrt_(clamp_(cos_theta, 0.0, 1.0));
     float whole = min_(floor(x), last - 1.0);
     uint at = first + ALBEDO_HEADER + uint(whole);

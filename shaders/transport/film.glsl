@@ -4,7 +4,7 @@
 
 #include "shading/sampling.glsl"
 
-// Scale of the sums that have no unit: alpha, normal, albedo; 2^22.
+// Scale of the sums that have no unit: alpha, normal, albedo; 2^`FRACTION_BITS`.
 const float AOV_SCALE = 4194304.0;
 // One contribution is clamped to +-2^39 fixed-point units, twice what a sample may hold.
 const float FIXED_LIMIT = 549755813888.0;

@@ -2,6 +2,7 @@
 #ifndef TRANSPORT_LIMIT_GLSL
 #define TRANSPORT_LIMIT_GLSL
 
+#include "layout/mod.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"
 #include "transport/mod.glsl"
@@ -22,6 +23,11 @@ void add_limited(uint slot, uint depth, Spectrum value, float coverage, uint dit
     if (SCENE_HAS_CLAMP && factor < 1.0) count_limited();
     Spectrum seen = value * factor;
     add_contribution(header.film_scale, slot, vec4(seen.x, seen.y, seen.z, coverage), dither);
+}
+
+// Adds the light of a shadow ray whose way is free. It has been scattered once at least.
+void add_light(ShadowRay shadow) {
+    add_limited(shadow.slot, 1u, shadow.contribution * shadow.weight, 0.0, shadow.dither);
 }
 
 #endif

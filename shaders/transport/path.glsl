@@ -25,7 +25,6 @@
 #include "transport/mis.glsl"
 #include "transport/nested.glsl"
 #include "transport/mod.glsl"
-#include "transport/shadow.glsl"
 #include "transport/weight.glsl"
 
 // Adds what a ray that leaves the scene sees.

@@ -13,11 +13,6 @@
 #include "transport/local.glsl"
 #include "transport/textured.glsl"
 
-// Adds the light of a shadow ray whose way is free. It has been scattered once at least.
-void add_light(ShadowRay shadow) {
-    add_limited(shadow.slot, 1u, shadow.contribution * shadow.weight, 0.0, shadow.dither);
-}
-
 // The weight of a shadow ray over the free way from its origin to `t`. Where an object that casts no shadow is in the way, no
 // ray that a surface scatters could have found the light: it counts in full.
 float way_weight(ShadowRay shadow, float t) {

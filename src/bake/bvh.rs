@@ -8,8 +8,9 @@
 use super::places::{NODES_MOST, Places};
 use super::split::{Cut, cut};
 use super::wide::{Part, widen};
-use super::{BakeError, Watch};
+use super::{BakeError, check};
 use crate::layout::{Node, STACK_SIZE};
+use crate::watch::Watch;
 use glam::{Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -118,9 +119,9 @@ pub(super) fn binary(
     let mut ranges = Vec::new();
     let mut nodes = top_nodes(&cut, &mut ranges);
     let build = |builder: &mut PlocBuilder, range: &std::ops::Range<usize>| {
-        watch.check()?;
+        check(watch)?;
         let part = Part::of_primitives(part_nodes(builder, &items[range.clone()]), leaf);
-        (watch.advance)(range.len() as u64);
+        watch.advance(range.len() as i64);
         Ok(part)
     };
     let parts = ranges.par_iter().map_init(PlocBuilder::new, build).collect::<Result<Vec<Part>, BakeError>>()?;
@@ -359,10 +360,10 @@ mod tests {
     fn a_tree_too_deep_for_the_stack_is_shallow_after_a_median_split() {
         let boxes = cascade(800, 0.9);
         let items: Vec<Item> = (0..).zip(&boxes).map(|(number, &bounds)| item(bounds, number)).collect();
-        let (top, parts) = binary(items.clone(), MESH_LEAF, PART, &Watch::NONE).expect("nobody aborts");
-        let (_, _, deep) = widen(&top, &parts, &Watch::NONE).expect("nobody aborts");
+        let (top, parts) = binary(items.clone(), MESH_LEAF, PART, &Watch::default()).expect("nobody aborts");
+        let (_, _, deep) = widen(&top, &parts, &Watch::default()).expect("nobody aborts");
         assert!(deep > STACK_SIZE, "{deep}");
-        let flat = Tree::build(items, MESH_LEAF, &Watch::NONE).expect("nobody aborts");
+        let flat = Tree::build(items, MESH_LEAF, &Watch::default()).expect("nobody aborts");
         assert!(flat.stack <= 5, "{}", flat.stack);
         let mut order = flat.order.clone();
         order.sort_unstable();

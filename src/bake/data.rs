@@ -1,12 +1,15 @@
 //! The baked scene: flat arrays, ready to upload or to trace.
 
 use super::BakeError;
+use super::shapes::Shapes;
 use crate::layout::{
-    Emitter, EnvironmentMap, Face, INTEGRATOR_WHITTED, Instance, Light, Material, Node, PARAMETER_MASK,
-    PARAMETER_OPACITY, SceneHeader, SceneView, Texture, Triangle, Vertex,
+    Emitter, EnvironmentMap, INTEGRATOR_WHITTED, Instance, Light, Material, PARAMETER_MASK, PARAMETER_OPACITY,
+    SceneHeader, SceneView, Texture,
 };
 use crate::shading::material::is_refracting;
 use serde::{Deserialize, Serialize};
+use std::ops::Deref;
+use std::sync::Arc;
 
 /// One array of the data heap, as it is uploaded.
 #[derive(Clone, Copy, Debug)]
@@ -17,20 +20,43 @@ pub struct HeapPiece<'a> {
     pub bytes: &'a [u8],
 }
 
-/// Everything a backend needs. Indices inside are absolute and valid.
+/// Everything a backend needs, finished: nothing of it changes any more.
 #[derive(Clone, Debug, Default)]
-pub struct SceneData {
+pub struct SceneData(SceneArrays);
+
+impl Deref for SceneData {
+    type Target = SceneArrays;
+
+    fn deref(&self) -> &SceneArrays {
+        &self.0
+    }
+}
+
+impl From<SceneArrays> for SceneData {
+    /// Bake's last step. Whoever else calls it answers for the indices: tests make scenes that no bake makes.
+    fn from(arrays: SceneArrays) -> Self {
+        Self(arrays)
+    }
+}
+
+impl SceneData {
+    /// A copy with something changed, for tests.
+    #[must_use]
+    pub fn altered(&self, change: impl FnOnce(&mut SceneArrays)) -> Self {
+        let mut arrays = self.0.clone();
+        change(&mut arrays);
+        Self(arrays)
+    }
+}
+
+/// What a baked scene consists of. Indices inside are absolute and valid.
+#[derive(Clone, Debug, Default)]
+pub struct SceneArrays {
     /// `first_*` members of the header are offsets into the heap that `heap_pieces` describes.
     pub header: SceneHeader,
-    /// Top-level and mesh BVHs, one after the other.
-    pub nodes: Vec<Node>,
-    /// In traversal order.
-    pub triangles: Vec<Triangle>,
+    /// Hierarchies, triangles, faces and vertices; scenes with the same shapes share them.
+    pub shapes: Arc<Shapes>,
     pub instances: Vec<Instance>,
-    /// Instance of each primitive of the top-level BVH.
-    pub top_instances: Vec<u32>,
-    pub faces: Vec<Face>,
-    pub vertices: Vec<Vertex>,
     pub materials: Vec<Material>,
     pub lights: Vec<Light>,
     /// What `path` samples; empty for the other integrators.
@@ -42,8 +68,6 @@ pub struct SceneData {
     pub texels: Vec<u32>,
     /// Filter tables, the sRGB decoding table (256 floats, first) and the like.
     pub tables: Vec<f32>,
-    /// Entries a traversal stack needs in the worst case: the deeper of the top level and the deepest mesh.
-    pub stack_depth: u32,
     /// Dropped primitives and the like; printed once.
     pub warnings: Vec<String>,
     /// What baking took.
@@ -69,7 +93,7 @@ pub struct BakeTimes {
     pub whole_s: f64,
 }
 
-impl SceneData {
+impl SceneArrays {
     /// Whether light goes straight on through something: by its material, or by holes that a texture cuts.
     pub fn has_panes(&self) -> bool {
         let cuts = |texture: &Texture| matches!(texture.parameter, PARAMETER_OPACITY | PARAMETER_MASK);
@@ -86,12 +110,12 @@ impl SceneData {
     pub fn view(&self) -> SceneView<'_> {
         SceneView {
             header: &self.header,
-            nodes: &self.nodes,
-            triangles: &self.triangles,
+            nodes: &self.shapes.nodes,
+            triangles: &self.shapes.triangles,
             instances: &self.instances,
-            top_instances: &self.top_instances,
-            faces: &self.faces,
-            vertices: &self.vertices,
+            top_instances: &self.shapes.top_instances,
+            faces: &self.shapes.faces,
+            vertices: &self.shapes.vertices,
             materials: &self.materials,
             lights: &self.lights,
             emitters: &self.emitters,
@@ -102,11 +126,11 @@ impl SceneData {
         }
     }
 
-    /// BLAKE3 of everything that reaches a sample. The shape of the BVH, the order of its triangles and where arrays
-    /// lie in the heap do not, and are left out; so is nothing else.
+    /// BLAKE3 of everything that reaches a sample. The shape of the BVH, the order of its triangles, where arrays lie in the
+    /// heap and whether auxiliary values are kept do not, and are left out; so is nothing else.
     pub fn digest(&self) -> [u8; 32] {
         let mut header = self.header;
-        header.top_root = 0;
+        (header.top_root, header.aovs) = (0, 0);
         let first = [
             &mut header.first_instance,
             &mut header.first_top_instance,
@@ -177,9 +201,9 @@ impl SceneData {
     fn heap_arrays(&self) -> [&[u8]; 11] {
         [
             bytemuck::cast_slice(&self.instances),
-            bytemuck::cast_slice(&self.top_instances),
-            bytemuck::cast_slice(&self.faces),
-            bytemuck::cast_slice(&self.vertices),
+            bytemuck::cast_slice(&self.shapes.top_instances),
+            bytemuck::cast_slice(&self.shapes.faces),
+            bytemuck::cast_slice(&self.shapes.vertices),
             bytemuck::cast_slice(&self.materials),
             bytemuck::cast_slice(&self.lights),
             bytemuck::cast_slice(&self.textures),

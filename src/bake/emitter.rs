@@ -2,9 +2,9 @@
 //! of each.
 
 use super::alias::alias_table;
-use super::bvh::Bounds;
 use super::environment::{bake_environment, luminance};
-use super::{BakeError, SceneData};
+use super::shapes::Shapes;
+use super::{BakeError, SceneArrays};
 use crate::layout::{
     EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_ONE_SIDED, EMITTER_SPHERE, EMITTER_TEXTURED, EMITTER_TRIANGLE, Emitter,
     INVALID, Instance, KIND_SPHERE, LIGHT_DIRECTIONAL, LIGHT_SPOT, Light, MATERIAL_EMIT_ONE_SIDED, MODEL_BLEND,
@@ -55,18 +55,13 @@ impl Collection {
 
 /// Fills in emitters, their table and what the header and the instances say of them. `environment`: its luminance, from
 /// `bake_surroundings`.
-/// `primitives`: those of each instance's mesh that can be hit. `world`: box of the whole scene.
-pub fn bake_emitters(
-    environment: f64,
-    primitives: &dyn Fn(usize) -> Vec<u32>,
-    world: Bounds,
-    data: &mut SceneData,
-) -> Result<(), BakeError> {
+pub fn bake_emitters(environment: f64, data: &mut SceneArrays) -> Result<(), BakeError> {
+    let world = data.shapes.bounds;
     let half = (world.max.as_dvec3() - world.min.as_dvec3()) * 0.5;
     let radius2 = half.length_squared().max(0.0);
     let mut all = Collection::default();
     for index in 0..data.instances.len() {
-        collect_instance(data, index, primitives, &mut all);
+        collect_instance(data, index, &mut all);
     }
     for (index, light) in data.lights.iter().enumerate() {
         let first = all.emitters.len();
@@ -88,7 +83,7 @@ pub fn bake_emitters(
 }
 
 /// Gives every emitter its probability and writes the alias table.
-fn distribute(mut all: Collection, data: &mut SceneData) {
+fn distribute(mut all: Collection, data: &mut SceneArrays) {
     let power: f64 = all.groups.iter().map(|group| group.power).sum();
     let even = 1.0 / all.groups.len().max(1) as f64;
     let mut probabilities = vec![0.0; all.emitters.len()];
@@ -125,7 +120,15 @@ fn emission(material: &Material) -> Vec3 {
     emission_material(material) * own_weight(material)
 }
 
-fn collect_instance(data: &SceneData, index: usize, primitives: &dyn Fn(usize) -> Vec<u32>, all: &mut Collection) {
+/// The primitives of an instance's mesh that can be hit, in ascending order.
+fn primitives(shapes: &Shapes, instance: usize) -> Vec<u32> {
+    let mesh = shapes.placed[instance].mesh.clone().unwrap_or_default();
+    let mut primitives: Vec<u32> = shapes.triangles[mesh.triangles].iter().map(|t| t.primitive).collect();
+    primitives.sort_unstable();
+    primitives
+}
+
+fn collect_instance(data: &SceneArrays, index: usize, all: &mut Collection) {
     let instance = &data.instances[index];
     let first = all.emitters.len();
     let glows = |id: u32| luminance(emission(&data.materials[id as usize]).as_dvec3()) > 0.0;
@@ -162,14 +165,14 @@ fn collect_instance(data: &SceneData, index: usize, primitives: &dyn Fn(usize) -
     } else if instance.material == INVALID || glows(instance.material) {
         let (matrix, offset) = (linear(instance), instance.to_world.map(|row| f64::from(row.w)));
         let place = |p: Vec3| matrix * p.as_dvec3() + DVec3::from_array(offset);
-        for primitive in primitives(index) {
-            let face = data.faces[(instance.first_face + primitive) as usize];
+        for primitive in primitives(&data.shapes, index) {
+            let face = data.shapes.faces[(instance.first_face + primitive) as usize];
             let id = if instance.material == INVALID { face.material } else { instance.material };
             if !glows(id) {
                 continue;
             }
             let material = &data.materials[id as usize];
-            let vertices = [face.i0, face.i1, face.i2].map(|i| &data.vertices[i as usize]);
+            let vertices = [face.i0, face.i1, face.i2].map(|i| &data.shapes.vertices[i as usize]);
             let [a, b, c] = vertices.map(|vertex| place(vertex.position));
             let (edge1, edge2) = (b - a, c - a);
             let across = edge1.cross(edge2);
@@ -219,7 +222,7 @@ fn light_power(light: &Light, radius2: f64) -> f64 {
 }
 
 /// Fills in what rays see that leave the scene. Returns the integral of its luminance over all directions.
-pub fn bake_surroundings(scene: &Scene, data: &mut SceneData) -> f64 {
+pub fn bake_surroundings(scene: &Scene, data: &mut SceneArrays) -> f64 {
     match &scene.background {
         Background::Gradient { bottom, top } => {
             (data.header.background_bottom, data.header.background_top) = (*bottom, *top);

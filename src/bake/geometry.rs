@@ -1,9 +1,10 @@
 //! Meshes: faces, vertices, traversal triangles and their hierarchy.
 
 use super::bvh::{Bounds, Item, MESH_LEAF, Tree, item};
-use super::{BakeError, Watch};
+use super::{BakeError, check};
 use crate::layout::{Face, INVALID, Triangle, Vertex};
 use crate::scene::{MaterialId, Mesh};
+use crate::watch::Watch;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -46,7 +47,7 @@ fn unit_of(largest: f32) -> f64 {
 /// Bakes one mesh. `default_material`: of faces that name none. Triangles with corners that are not numbers or without
 /// area are dropped and counted in `warning`.
 pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId, watch: &Watch) -> Result<BakedMesh, BakeError> {
-    watch.check()?;
+    check(watch)?;
     let start = Instant::now();
     let finite = |corners: &[u32; 3]| corners.iter().all(|&i| mesh.positions[i as usize].is_finite());
     let used = mesh.triangles.par_iter().filter(|corners| finite(corners)).flatten_iter();

@@ -1,6 +1,6 @@
 //! Media that nest: the clear bodies of a scene in the order of their priorities.
 
-use super::{BakeError, SceneData};
+use super::{BakeError, SceneArrays};
 use crate::layout::{INTEGRATOR_LOCAL, MODEL_DIELECTRIC, MODEL_ROUGH_DIELECTRIC};
 use crate::scene;
 
@@ -9,7 +9,7 @@ const MOST: usize = 255;
 
 /// Gives each clear body its rank, and the table of media its index and Beer coefficient, if any material of the scene has a
 /// priority. `data.materials` are those of the scene, in their order.
-pub fn rank_media(materials: &[scene::Material], data: &mut SceneData) -> Result<(), BakeError> {
+pub fn rank_media(materials: &[scene::Material], data: &mut SceneArrays) -> Result<(), BakeError> {
     if data.header.integrator == INTEGRATOR_LOCAL || materials.iter().all(|material| material.priority.is_none()) {
         return Ok(());
     }

@@ -19,6 +19,7 @@ mod mip;
 mod model;
 mod places;
 mod scene;
+pub mod shapes;
 mod split;
 pub mod srgb;
 mod tabulated;
@@ -26,25 +27,15 @@ mod texture;
 mod wide;
 
 pub use albedo::gaussian_scale;
-pub use data::{BakeTimes, HeapPiece, SceneData};
-pub use scene::{bake, bake_watched};
+pub use data::{BakeTimes, HeapPiece, SceneArrays, SceneData};
+pub use scene::{Baker, bake, bake_watched};
 
-/// Who looks on while a scene is baked.
-#[derive(Clone, Copy)]
-pub struct Watch<'a> {
-    /// Whether to give up (`BakeError::Aborted`); asked often.
-    pub abort: &'a (dyn Fn() -> bool + Sync),
-    /// Told of primitives that have been dealt with, each of them twice: in the binary tree and in the wide one.
-    pub advance: &'a (dyn Fn(u64) + Sync),
-}
+use crate::watch::Watch;
 
-impl Watch<'_> {
-    /// Nobody.
-    pub const NONE: Watch<'static> = Watch { abort: &|| false, advance: &|_| {} };
-
-    fn check(&self) -> Result<(), BakeError> {
-        if (self.abort)() { Err(BakeError::Aborted) } else { Ok(()) }
-    }
+/// Gives up where the watch is cancelled. Its steps are primitives that have been dealt with, each of them twice: in the binary
+/// tree and in the wide one.
+fn check(watch: &Watch) -> Result<(), BakeError> {
+    if watch.is_cancelled() { Err(BakeError::Aborted) } else { Ok(()) }
 }
 
 /// Why a scene cannot be baked: exit code 65.
@@ -90,7 +81,7 @@ pub enum BakeError {
     /// No hierarchy is shallow enough.
     #[error("the scene's hierarchy needs a stack of {0} entries; at most 32 are possible")]
     Deep(u32),
-    /// As `Watch::abort` wanted.
+    /// The watch was cancelled.
     #[error("interrupted before the scene was ready")]
     Aborted,
 }

@@ -1,59 +1,86 @@
 //! The whole scene: numbers its parts, shares what is the same, and fills in the header.
 
-use super::bvh::{Bounds, Item, TOP_LEAF, Tree, item};
 use super::emitter::{bake_emitters, bake_surroundings};
 use super::filter::filter_table;
-use super::geometry::{BakedMesh, bake_mesh};
-use super::instance::{place, top_margin};
 use super::light::{bake_light, unit};
 use super::media::rank_media;
 use super::model::{bake_blends, bake_material, casts_shadow};
+use super::shapes::{Shapes, bake_shapes, shapes_key};
 use super::srgb::srgb_table;
 use super::texture::{bake_textures, bind_textures};
-use super::{BakeError, SceneData, Watch};
+use super::{BakeError, BakeTimes, SceneArrays, SceneData};
 use crate::layout::{
-    Camera, INSTANCE_FLAT, INSTANCE_GOURAUD, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL, INTEGRATOR_PATH,
-    INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH, KIND_SPHERE, Node, SAMPLER_INDEPENDENT, SAMPLER_SOBOL,
-    SAMPLER_STRATIFIED, SHADOWS_FILTERED, SHADOWS_OFF, SHADOWS_OPAQUE, STACK_SIZE, SceneHeader,
+    Camera, FRACTION_BITS, INSTANCE_FLAT, INSTANCE_GOURAUD, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL,
+    INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH, KIND_SPHERE, SAMPLER_INDEPENDENT, SAMPLER_SOBOL,
+    SAMPLER_STRATIFIED, SHADOWS_FILTERED, SHADOWS_OFF, SHADOWS_OPAQUE, SceneHeader,
 };
 use crate::scene::{
-    self, Film, Geometry, Integrator, Material, MaterialId, Mesh, Object, Projection, Sampler, Scene, Shading, Shadows,
+    self, Film, Geometry, Integrator, Material, MaterialId, Object, Projection, Sampler, Scene, Shading, Shadows,
 };
 use crate::shading::material::emission_material;
+use crate::watch::Watch;
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
+use std::sync::Arc;
 use std::time::Instant;
-
-/// k of the film's fixed point (DESIGN, strict rule 8): 2^-22 of a film unit is the smallest step.
-const FILM_BITS: i32 = 22;
 
 /// Bakes a scene whose indices are valid (`scene::load` guarantees it).
 pub fn bake(scene: &Scene) -> Result<SceneData, BakeError> {
-    bake_watched(scene, &Watch::NONE)
+    bake_watched(scene, &Watch::default())
 }
 
 /// The same while somebody looks on.
 pub fn bake_watched(scene: &Scene, watch: &Watch) -> Result<SceneData, BakeError> {
+    bake_with(scene, |times| bake_shapes(scene, default_material(scene), times, watch).map(Arc::new))
+}
+
+/// Bakes scenes one after the other, such as the panels of a file: one that has the shapes of the last one shares them.
+#[derive(Debug, Default)]
+pub struct Baker {
+    last: Option<([u8; 32], Arc<Shapes>)>,
+}
+
+impl Baker {
+    /// One that goes on from a scene that is baked.
+    pub fn after(scene: &Scene, data: &SceneData) -> Self {
+        Self { last: Some((shapes_key(scene, default_material(scene)), data.shapes.clone())) }
+    }
+
+    /// As `bake_watched`.
+    pub fn bake(&mut self, scene: &Scene, watch: &Watch) -> Result<SceneData, BakeError> {
+        bake_with(scene, |times| {
+            let key = shapes_key(scene, default_material(scene));
+            // What is of no more use makes room before there is more.
+            self.last.take_if(|(last, _)| *last != key);
+            if let Some((_, shapes)) = &self.last {
+                return Ok(shapes.clone());
+            }
+            let shapes = Arc::new(bake_shapes(scene, default_material(scene), times, watch)?);
+            self.last = Some((key, shapes.clone()));
+            Ok(shapes)
+        })
+    }
+}
+
+/// Bakes a scene with the shapes that `shapes` gives.
+fn bake_with(
+    scene: &Scene,
+    shapes: impl FnOnce(&mut BakeTimes) -> Result<Arc<Shapes>, BakeError>,
+) -> Result<SceneData, BakeError> {
     let start = Instant::now();
-    let mut data = SceneData { header: header(scene)?, ..SceneData::default() };
+    let mut data = SceneArrays { header: header(scene)?, ..SceneArrays::default() };
     bake_tables(&scene.film.filter, &mut data);
     bake_textures(&scene.textures, &mut data);
     check_count("words of texels", data.texels.len())?;
-    let default_material = bake_materials(scene, &mut data)?;
+    bake_materials(scene, &mut data)?;
     data.lights = scene.lights.iter().map(|light| bake_light(light, &mut data.tables)).collect();
     data.times.materials_s = start.elapsed().as_secs_f64();
-    let mut meshes = bake_meshes(scene, default_material, watch)?;
-    for mesh in meshes.iter().flatten() {
-        data.times.geometry_s += mesh.geometry_s;
-        data.times.binary_s += mesh.tree.seconds[0];
-        data.times.wide_s += mesh.tree.seconds[1];
-    }
+    data.shapes = shapes(&mut data.times)?;
+    data.warnings.extend_from_slice(&data.shapes.warnings);
+    (data.header.top_root, data.header.top_margin) = (data.shapes.top_root, data.shapes.top_margin);
     let placing = Instant::now();
-    let mut parts = place_objects(scene, &mut meshes, default_material, &mut data)?;
-    parts.meshes = meshes;
-    bake_light_sources(scene, &parts, &mut data)?;
-    data.times.top_s = placing.elapsed().as_secs_f64();
-    build_hierarchy(parts, &mut data, watch)?;
+    bake_instances(scene, &mut data)?;
+    bake_light_sources(scene, &mut data)?;
+    data.times.top_s += placing.elapsed().as_secs_f64();
     data.header.instance_count = data.instances.len() as u32;
     data.header.light_count = data.lights.len() as u32;
     data.header.shadow_rays = shadow_rays(&data);
@@ -67,11 +94,11 @@ pub fn bake_watched(scene: &Scene, watch: &Watch) -> Result<SceneData, BakeError
     data.place_heap()?;
     data.warnings.extend(unused_shading(scene));
     data.times.whole_s = start.elapsed().as_secs_f64();
-    Ok(data)
+    Ok(SceneData::from(data))
 }
 
 /// Shadow rays of one hit at most: to each light from each of its shading points, or to one emitter.
-fn shadow_rays(data: &SceneData) -> u32 {
+fn shadow_rays(data: &SceneArrays) -> u32 {
     let gouraud = data.instances.iter().any(|instance| instance.flags & INSTANCE_GOURAUD != 0);
     match data.header.integrator {
         INTEGRATOR_PATH => 1,
@@ -79,7 +106,7 @@ fn shadow_rays(data: &SceneData) -> u32 {
     }
 }
 
-fn check_count(what: &'static str, count: usize) -> Result<(), BakeError> {
+pub(super) fn check_count(what: &'static str, count: usize) -> Result<(), BakeError> {
     // INVALID itself is no index.
     if count as u64 >= u64::from(INVALID) { Err(BakeError::TooLarge { what, count: count as u64 }) } else { Ok(()) }
 }
@@ -89,8 +116,8 @@ fn traced(scene: &Scene) -> bool {
     matches!(scene.settings.integrator, Integrator::Direct | Integrator::Path)
 }
 
-/// Bakes all materials, and one more where an object or face names none. Returns the id of that one.
-fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, BakeError> {
+/// Bakes all materials, and one more where an object or face names none (`default_material`).
+fn bake_materials(scene: &Scene, data: &mut SceneArrays) -> Result<(), BakeError> {
     for material in &scene.materials {
         let mut baked = bake_material(material, &scene.tables, traced(scene), &mut data.tables)?;
         bind_textures(material, &mut baked, data)?;
@@ -100,18 +127,21 @@ fn bake_materials(scene: &Scene, data: &mut SceneData) -> Result<MaterialId, Bak
         Geometry::Sphere => object.material.is_none(),
         Geometry::Mesh(id) => object.material.is_none() && scene.meshes[id.0 as usize].face_materials.is_empty(),
     };
-    let default = MaterialId(scene.materials.len() as u32);
     if scene.objects.iter().any(nameless) {
         data.materials.push(bake_material(&Material::grey("default"), &[], traced(scene), &mut data.tables)?);
     }
     rank_media(&scene.materials, data)?;
     bake_blends(&scene.materials, &mut data.materials)?;
-    check_count("table entries", data.tables.len())?;
-    Ok(default)
+    check_count("table entries", data.tables.len())
+}
+
+/// The material of objects and faces that name none: one after the scene's own.
+fn default_material(scene: &Scene) -> MaterialId {
+    MaterialId(scene.materials.len() as u32)
 }
 
 /// The table array: the sRGB decoding table first, then the filter's, if it has one.
-fn bake_tables(filter: &scene::Filter, data: &mut SceneData) {
+fn bake_tables(filter: &scene::Filter, data: &mut SceneArrays) {
     data.tables = srgb_table();
     let filter = filter_table(filter);
     let h = &mut data.header;
@@ -121,7 +151,7 @@ fn bake_tables(filter: &scene::Filter, data: &mut SceneData) {
 }
 
 /// The image around the scene and, for path tracing, everything that glows.
-fn bake_light_sources(scene: &Scene, parts: &Parts, data: &mut SceneData) -> Result<(), BakeError> {
+fn bake_light_sources(scene: &Scene, data: &mut SceneArrays) -> Result<(), BakeError> {
     let environment = bake_surroundings(scene, data);
     if data.header.integrator != INTEGRATOR_PATH {
         return Ok(());
@@ -131,104 +161,35 @@ fn bake_light_sources(scene: &Scene, parts: &Parts, data: &mut SceneData) -> Res
     }
     let shines = |material: &crate::layout::Material| emission_material(material) != Vec3::ZERO;
     data.header.glows = u32::from(scene.background.shines() || data.materials.iter().any(shines));
-    let world = parts.shown.iter().fold(Bounds::EMPTY, |all, &(_, own)| all.union(own));
-    let primitives = |instance: usize| {
-        let mesh = parts.shown[instance].0.and_then(|id| parts.meshes[id].as_ref());
-        let mut primitives: Vec<u32> =
-            mesh.map_or(Vec::new(), |mesh| mesh.triangles.iter().map(|t| t.primitive).collect());
-        primitives.sort_unstable();
-        primitives
-    };
-    bake_emitters(environment, &primitives, world, data)
+    bake_emitters(environment, data)
 }
 
-/// Bakes each mesh that an object uses, once.
-fn bake_meshes(
-    scene: &Scene,
-    default_material: MaterialId,
-    watch: &Watch,
-) -> Result<Vec<Option<BakedMesh>>, BakeError> {
-    let mut used = vec![false; scene.meshes.len()];
-    for object in &scene.objects {
-        if let Geometry::Mesh(id) = object.geometry {
-            used[id.0 as usize] = true;
-        }
-    }
-    let one = |(mesh, &used): (&Mesh, &bool)| used.then(|| bake_mesh(mesh, default_material, watch)).transpose();
-    scene.meshes.par_iter().zip(&used).map(one).collect()
-}
-
-/// What the two levels are built from.
-struct Parts {
-    meshes: Vec<Option<BakedMesh>>,
-    /// Mesh and world box of each instance.
-    shown: Vec<(Option<usize>, Bounds)>,
-    growth: f64,
-}
-
-/// Makes the instances, and the faces and vertices of the meshes they show.
-fn place_objects(
-    scene: &Scene,
-    meshes: &mut [Option<BakedMesh>],
-    default_material: MaterialId,
-    data: &mut SceneData,
-) -> Result<Parts, BakeError> {
-    let faces = meshes.iter().flatten().map(|mesh| mesh.faces.len()).sum();
-    let vertices = meshes.iter().flatten().map(|mesh| mesh.vertices.len()).sum();
-    check_count("vertices", vertices)?;
-    check_count("faces", faces)?;
-    let mut first_face = vec![0u32; meshes.len()];
-    for (id, mesh) in meshes.iter_mut().enumerate() {
-        let Some(mesh) = mesh else { continue };
-        data.warnings.extend(mesh.warning.clone());
-        first_face[id] = data.faces.len() as u32;
-        let base = data.vertices.len() as u32;
-        if base > 0 {
-            mesh.faces.par_iter_mut().for_each(|face| {
-                (face.i0, face.i1, face.i2) = (base + face.i0, base + face.i1, base + face.i2);
-            });
-        }
-        append(&mut data.faces, std::mem::take(&mut mesh.faces), faces);
-        append(&mut data.vertices, std::mem::take(&mut mesh.vertices), vertices);
-    }
-    let mut parts = Parts { meshes: Vec::new(), shown: Vec::new(), growth: 1.0 };
-    for (index, object) in scene.objects.iter().enumerate() {
-        let sphere = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
-        let (mesh, unit, bounds) = match object.geometry {
-            Geometry::Sphere => (None, 1.0, sphere),
-            Geometry::Mesh(id) => match &meshes[id.0 as usize] {
-                Some(BakedMesh { tree: Tree { bounds: Some(bounds), .. }, unit, .. }) => {
-                    (Some(id.0 as usize), *unit, *bounds)
-                }
-                // Nothing of it can be hit.
-                _ => continue,
-            },
-        };
-        let placement = place(&object.name, &object.transform, unit, &bounds, mesh.is_none())?;
-        parts.growth = parts.growth.max(placement.growth);
-        parts.shown.push((mesh, placement.world));
+/// Makes the instances: the placed shapes with what the scene's settings and materials say of them.
+fn bake_instances(scene: &Scene, data: &mut SceneArrays) -> Result<(), BakeError> {
+    for placed in &data.shapes.placed {
+        let object = &scene.objects[placed.object as usize];
         let (shadowed, warning) = instance_shadow(scene, object);
         data.warnings.extend(warning);
+        let mesh = placed.mesh.as_ref();
         data.instances.push(Instance {
-            to_world: placement.to_world,
-            to_object: placement.to_object,
+            to_world: placed.to_world,
+            to_object: placed.to_object,
             kind: if mesh.is_some() { KIND_MESH } else { KIND_SPHERE },
-            root: INVALID,
-            first_face: mesh.map_or(0, |id| first_face[id]),
+            root: mesh.map_or(INVALID, |mesh| mesh.root),
+            first_face: mesh.map_or(0, |mesh| mesh.first_face),
             material: match (object.material, mesh) {
                 (Some(id), _) => id.0,
                 (None, Some(_)) => INVALID,
-                (None, None) => default_material.0,
+                (None, None) => default_material(scene).0,
             },
             flags: (if shadowed { 0 } else { INSTANCE_NO_SHADOW })
-                | (if placement.mirrored { INSTANCE_MIRRORED } else { 0 })
+                | (if placed.mirrored { INSTANCE_MIRRORED } else { 0 })
                 | instance_shading(scene, object)?,
-            object: index as u32,
+            object: placed.object,
             ..Instance::default()
         });
     }
-    check_count("instances", data.instances.len())?;
-    Ok(parts)
+    Ok(())
 }
 
 /// Says so where a shading is asked for that the integrator does not honour.
@@ -280,71 +241,10 @@ fn instance_shadow(scene: &Scene, object: &Object) -> (bool, Option<String>) {
     (casts, warning)
 }
 
-/// Appends `more` to `all`, which is to have `total` items in the end. The first part of a scene moves without a copy: large
-/// arrays grow in place.
-fn append<T>(all: &mut Vec<T>, mut more: Vec<T>, total: usize) {
-    if all.is_empty() {
-        std::mem::swap(all, &mut more);
-    }
-    all.reserve_exact(total - all.len());
-    all.append(&mut more);
-}
-
-/// Builds the top level and lays all hierarchies out in one array.
-fn build_hierarchy(mut parts: Parts, data: &mut SceneData, watch: &Watch) -> Result<(), BakeError> {
-    data.header.top_margin = top_margin(parts.growth);
-    data.header.top_root = INVALID;
-    if parts.shown.is_empty() {
-        return Ok(());
-    }
-    let start = Instant::now();
-    let boxes: Vec<Item> = (0..).zip(&parts.shown).map(|(index, &(_, world))| item(world, index)).collect();
-    let top = Tree::build(boxes, TOP_LEAF, watch)?;
-    let meshes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.stack);
-    data.stack_depth = meshes.fold(top.stack, u32::max);
-    if data.stack_depth > STACK_SIZE {
-        return Err(BakeError::Deep(data.stack_depth));
-    }
-    data.times.top_s += start.elapsed().as_secs_f64();
-
-    let start = Instant::now();
-    let triangles = parts.meshes.iter().flatten().map(|mesh| mesh.triangles.len()).sum();
-    check_count("triangles", triangles)?;
-    let nodes = parts.meshes.iter().flatten().map(|mesh| mesh.tree.nodes.len()).sum::<usize>() + top.nodes.len();
-    check_count("nodes", nodes)?;
-    let mut roots = vec![INVALID; parts.meshes.len()];
-    for (id, mesh) in parts.meshes.iter_mut().enumerate() {
-        let Some(mesh) = mesh.as_mut().filter(|mesh| !mesh.is_empty()) else {
-            continue;
-        };
-        let first = (data.nodes.len() as u32, data.triangles.len() as u32);
-        roots[id] = first.0;
-        append(&mut data.nodes, shifted(std::mem::take(&mut mesh.tree.nodes), first.1), nodes);
-        append(&mut data.triangles, std::mem::take(&mut mesh.triangles), triangles);
-    }
-    // The top level last, so that the nodes of a large mesh need not make room for it.
-    data.header.top_root = data.nodes.len() as u32;
-    append(&mut data.nodes, top.nodes, nodes);
-    data.top_instances = top.order;
-    for (instance, (mesh, _)) in data.instances.iter_mut().zip(&parts.shown) {
-        instance.root = mesh.map_or(INVALID, |id| roots[id]);
-    }
-    data.times.pack_s += start.elapsed().as_secs_f64();
-    Ok(())
-}
-
-/// Nodes of a hierarchy whose primitives begin at `first` in the scene's array.
-fn shifted(mut nodes: Vec<Node>, first: u32) -> Vec<Node> {
-    if first != 0 {
-        nodes.par_iter_mut().for_each(|node| node.primitive_base += first);
-    }
-    nodes
-}
-
 /// All of the header that does not depend on the arrays.
 fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
     let settings = &scene.settings;
-    let exponent = FILM_BITS - scene.film.unit_exponent;
+    let exponent = FRACTION_BITS as i32 - scene.film.unit_exponent;
     if !(-100..=100).contains(&scene.film.unit_exponent) {
         return Err(BakeError::FilmUnit(scene.film.unit_exponent));
     }
@@ -376,7 +276,8 @@ fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
         rr_depth: settings.rr_depth,
         // Only paths have scattered light to limit.
         clamp: if traced(scene) { settings.clamp.unwrap_or(0.0) } else { 0.0 },
-        hide_background: u32::from(settings.hide_emitters && traced(scene)),
+        hide_background: u32::from(settings.transparent || settings.hide_emitters && traced(scene)),
+        aovs: u32::from(settings.aovs),
         hide_emitters: u32::from(settings.hide_emitters && traced(scene)),
         ..SceneHeader::default()
     })

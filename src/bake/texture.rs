@@ -3,7 +3,7 @@
 
 use super::mip::mip_levels;
 use super::srgb::srgb_table;
-use super::{BakeError, SceneData};
+use super::{BakeError, SceneArrays};
 use crate::layout::{
     CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, MAGNIFY_BILINEAR, MAGNIFY_NEAREST, MATERIAL_ANISOTROPIC,
     Material, PARAMETER_ANISOTROPIC, PARAMETER_BUMP, PARAMETER_CLEARCOAT, PARAMETER_CLEARCOAT_GLOSS, PARAMETER_COLOR,
@@ -16,7 +16,7 @@ use crate::layout::{
 use crate::scene::{self, Channel, Parameter, Pattern, PatternKind, TextureBinding, TextureData, Wrap};
 
 /// Bakes all textures; record i is texture i of the scene.
-pub fn bake_textures(textures: &[scene::Texture], data: &mut SceneData) {
+pub fn bake_textures(textures: &[scene::Texture], data: &mut SceneArrays) {
     for texture in textures {
         let record = bake_texture(texture, &mut data.texels);
         data.textures.push(record);
@@ -36,7 +36,11 @@ pub fn bake_textures(textures: &[scene::Texture], data: &mut SceneData) {
 }
 
 /// Appends a record for each texture that `material` binds, and writes their place into `baked`.
-pub fn bind_textures(material: &scene::Material, baked: &mut Material, data: &mut SceneData) -> Result<(), BakeError> {
+pub fn bind_textures(
+    material: &scene::Material,
+    baked: &mut Material,
+    data: &mut SceneArrays,
+) -> Result<(), BakeError> {
     let count = material.textures.len();
     if count > TEXTURES_MOST as usize {
         return Err(BakeError::Textures { name: material.name.clone(), count });

@@ -7,8 +7,9 @@
 
 use super::bvh::{Bounds, Item, octant_slots, pack_node, stack_needs};
 use super::places::{NODES_MOST, Places};
-use super::{BakeError, Watch};
+use super::{BakeError, check};
 use crate::layout::Node;
+use crate::watch::Watch;
 use glam::Vec3A;
 use rayon::prelude::*;
 
@@ -276,12 +277,12 @@ pub fn widen(top: &Part, parts: &[Part], watch: &Watch) -> Result<(Vec<Node>, Ve
     let whole = Whole { top, parts };
     let root = whole.resolve(Place { part: TOP, node: 0 });
     let (mut first, later) = whole.write(root, |place| place.part != TOP);
-    (watch.advance)(first.order.len() as u64);
+    watch.advance(first.order.len() as i64);
     let write = |&(place, _): &(Place, u32)| {
-        watch.check()?;
+        check(watch)?;
         let (mut part, _) = whole.write(place, |_| false);
         part.stack = stack_needs(&part.nodes, vec![0; part.nodes.len()]);
-        (watch.advance)(part.order.len() as u64);
+        watch.advance(part.order.len() as i64);
         Ok(part)
     };
     let below = later.par_iter().map(write).collect::<Result<Vec<Written>, BakeError>>()?;
@@ -409,10 +410,10 @@ mod tests {
         let cases = [(1, 3, 9), (2, 3, 9), (3, 1, 9), (9, 3, 4), (100, 1, 200), (1000, 3, 70), (20_000, 3, 500)];
         for (count, most, part) in cases {
             let items = items(count);
-            let (top, parts) = binary(items.clone(), most, part, &Watch::NONE).expect("nobody aborts");
+            let (top, parts) = binary(items.clone(), most, part, &Watch::default()).expect("nobody aborts");
             assert!(parts.iter().all(|found| found.leaves().count() <= part), "{count} primitives");
             assert_eq!(parts.len() > 1, count as usize > part, "{count} primitives");
-            let (nodes, order, _) = widen(&top, &parts, &Watch::NONE).expect("nobody aborts");
+            let (nodes, order, _) = widen(&top, &parts, &Watch::default()).expect("nobody aborts");
             let bytes = |[low, high]: [u32; 2]| (u64::from(low) | u64::from(high) << 32).to_le_bytes();
             let ours: Vec<Bare> = nodes
                 .iter()

@@ -29,14 +29,14 @@ pub fn export(folder: &Path, name: &str, data: &SceneData, sets: &[RaySet]) -> R
     write("triangles.f32", &mut |out| {
         each_triangle(data, &meshes, |_, instance, place| {
             triangles += 1;
-            let triangle = &data.triangles[place as usize];
+            let triangle = &data.shapes.triangles[place as usize];
             let world = [triangle.v0, triangle.v1, triangle.v2].map(|corner| to_world(instance, corner));
             out.write_all(bytemuck::bytes_of(&world))
         })
     })?;
     write("triangles.u32", &mut |out| {
         each_triangle(data, &meshes, |id, instance, place| {
-            let words = [id, data.triangles[place as usize].primitive, casts_shadow(instance)];
+            let words = [id, data.shapes.triangles[place as usize].primitive, casts_shadow(instance)];
             out.write_all(bytemuck::bytes_of(&words))
         })
     })?;

@@ -39,17 +39,17 @@ pub fn size_of_scene(data: &SceneData) -> Size {
         }
     }
     let top = Level::new(data, |place| {
-        let instance = &data.instances[data.top_instances[place as usize] as usize];
+        let instance = &data.instances[data.shapes.top_instances[place as usize] as usize];
         if instance.kind == KIND_MESH { costs[&instance.root] } else { 1.0 }
     });
     Size {
-        triangles: data.triangles.len() as u64,
+        triangles: data.shapes.triangles.len() as u64,
         instances: data.instances.len() as u64,
         placed,
-        nodes: data.nodes.iter().filter(|node| node.child_meta != [0; 2]).count() as u64,
+        nodes: data.shapes.nodes.iter().filter(|node| node.child_meta != [0; 2]).count() as u64,
         sah: if data.header.top_root == INVALID { 0.0 } else { top.cost(data.header.top_root) },
-        node_bytes: size_of_val(data.nodes.as_slice()) as u64,
-        triangle_bytes: size_of_val(data.triangles.as_slice()) as u64,
+        node_bytes: size_of_val(data.shapes.nodes.as_slice()) as u64,
+        triangle_bytes: size_of_val(data.shapes.triangles.as_slice()) as u64,
         data_bytes: data.heap_words() * 16,
     }
 }
@@ -59,7 +59,7 @@ pub fn diagonal(data: &SceneData) -> f64 {
     if data.header.top_root == INVALID {
         return 0.0;
     }
-    let (low, high) = extent(&data.nodes[data.header.top_root as usize]);
+    let (low, high) = extent(&data.shapes.nodes[data.header.top_root as usize]);
     let size = high - low;
     libm::sqrt(size.x * size.x + size.y * size.y + size.z * size.z)
 }
@@ -68,7 +68,7 @@ pub fn diagonal(data: &SceneData) -> f64 {
 pub fn triangles_below(data: &SceneData, root: u32) -> Vec<u32> {
     let mut found = Vec::new();
     Level::new(data, |_| 1.0).walk(root, |_, _, places| found.extend(places.into_iter().flatten()));
-    found.sort_by_key(|&place| data.triangles[place as usize].primitive);
+    found.sort_by_key(|&place| data.shapes.triangles[place as usize].primitive);
     found
 }
 
@@ -113,7 +113,7 @@ impl<'a, F: Fn(u32) -> f64> Level<'a, F> {
     fn walk(&self, root: u32, mut visit: impl FnMut(&Node, usize, Option<std::ops::Range<u32>>)) {
         let mut waiting = vec![root];
         while let Some(index) = waiting.pop() {
-            let node = &self.data.nodes[index as usize];
+            let node = &self.data.shapes.nodes[index as usize];
             for (slot, child) in node.inner_children(root) {
                 visit(node, slot as usize, None);
                 waiting.push(child);
@@ -135,7 +135,7 @@ impl<'a, F: Fn(u32) -> f64> Level<'a, F> {
     }
 
     fn cost(&self, root: u32) -> f64 {
-        let whole = half_area(extent(&self.data.nodes[root as usize]));
+        let whole = half_area(extent(&self.data.shapes.nodes[root as usize]));
         let mut cost = 1.0;
         self.walk(root, |node, slot, places| {
             let share = if whole > 0.0 { half_area(child_box(node, slot)) / whole } else { 1.0 };

@@ -5,28 +5,31 @@ use super::run::{Plan, take_turns};
 use super::stats::Runs;
 use super::tracer::Timing;
 use crate::film::{Film, Rect};
-use crate::render::{Counters, Job, RenderError, Renderer, Watch};
-use std::sync::atomic::AtomicBool;
+use crate::render::session::Session;
+use crate::render::{Counters, RenderError};
+use crate::watch::Watch;
+use std::sync::Arc;
 use std::time::Instant;
 
-/// Measures one sample a pixel of `film`'s frame on all renderers and compares the films with the first one's.
-/// `integrator`: which one the renderers were made for.
+/// Measures one sample a pixel of `film`'s frame in all sessions and compares the films with the first one's.
+/// `integrator`: which one the scene was baked for.
 pub fn measure(
     integrator: &str,
     film: &Film,
-    renderers: &mut [(String, Box<dyn Renderer + '_>)],
+    sessions: &[(String, Session)],
     plan: Plan,
 ) -> Result<ImageReport, RenderError> {
-    let mut films = vec![film.clone(); renderers.len()];
-    let mut shares = vec![Vec::new(); renderers.len()];
-    let times = take_turns(plan, renderers.len(), |at| {
-        films[at] = film.clone();
-        let (timing, kernels) = render(renderers[at].1.as_mut(), &mut films[at])?;
+    let mut shares = vec![Vec::new(); sessions.len()];
+    let times = take_turns(plan, sessions.len(), |at| {
+        let session = &sessions[at].1;
+        session.restart(film.clone());
+        let (timing, kernels) = render(session)?;
         shares[at].extend(timing.device.map(|_| kernels / timing.wall));
         Ok(timing)
     })?;
+    let films: Vec<Arc<Film>> = sessions.iter().map(|(_, session)| session.snapshot()).collect();
     let mut results = Vec::new();
-    for ((((on, _), (wall_s, device_s)), other), share) in renderers.iter().zip(times).zip(&films).zip(shares) {
+    for ((((on, _), (wall_s, device_s)), other), share) in sessions.iter().zip(times).zip(&films).zip(shares) {
         let differs = |(a, b): (&[i64; 4], &[i64; 4])| a != b;
         let differ = films[0].sums().iter().zip(other.sums()).filter(|&pair| differs(pair)).count() as u64;
         let first = films[0].sums().iter().zip(other.sums()).position(differs);
@@ -40,12 +43,12 @@ pub fn measure(
 }
 
 /// The time, and how many seconds of it were in kernels that trace or shade.
-fn render(renderer: &mut dyn Renderer, film: &mut Film) -> Result<(Timing, f64), RenderError> {
-    let job = Job { crop: film.crop(), samples: 0..1 };
-    let abort = AtomicBool::new(false);
-    let watch = Watch { abort: &abort, advance: &|_| {} };
+fn render(session: &Session) -> Result<(Timing, f64), RenderError> {
     let start = Instant::now();
-    let Counters { extend_s, shade_s, shadow_s, other_s, .. } = renderer.accumulate(&job, film, &watch)?;
+    let shares = session.render(0..1, &Watch::default())?;
+    let mut counters = Counters::default();
+    shares.iter().for_each(|share| counters += share.counters);
+    let Counters { extend_s, shade_s, shadow_s, other_s, .. } = counters;
     let kernels = extend_s + shade_s + shadow_s;
     let device = kernels + other_s;
     Ok((Timing { wall: start.elapsed().as_secs_f64(), device: (device > 0.0).then_some(device) }, kernels))

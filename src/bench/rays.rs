@@ -13,6 +13,7 @@ use crate::trace::spawn::spawn_ray;
 use crate::trace::surface::{Surface, surface_at};
 use crate::trace::traverse::{trace_any, trace_closest};
 use crate::transport::generate::{generate, sample_key};
+use crate::transport::local::SHADOW_END;
 use glam::Vec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -21,8 +22,6 @@ use serde::{Deserialize, Serialize};
 const MAX_PASSES: u32 = 16;
 /// Length of an ambient occlusion ray over the diagonal of the scene's box.
 const OCCLUSION_REACH: f64 = 0.05;
-/// A shadow ray ends this fraction short of its light, as in `transport::local`.
-const SHADOW_END: f32 = 0.9999;
 
 /// Dimensions of the random numbers drawn here; `transport` uses none of them.
 const DIMENSION_FIRST: u32 = 0x4000_0000;

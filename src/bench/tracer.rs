@@ -5,8 +5,8 @@ use crate::bake::SceneData;
 use crate::layout::{Batch, Hit, Ray, ShadowRay};
 use crate::render::RenderError;
 use crate::render::vulkan::{
-    Bound, Buffer, Context, DeviceChoice, DeviceInfo, Kernel, Place, SceneBuffers, Submission, VulkanError,
-    VulkanOptions, WORKGROUP, specialisation,
+    Bound, Buffer, Context, DeviceChoice, DeviceInfo, Kernel, Place, SceneBuffers, Submission, VulkanOptions,
+    WORKGROUP, specialisation,
 };
 use crate::shaders::{self, Fetch};
 use rayon::prelude::*;
@@ -91,7 +91,7 @@ impl<'a> CpuTracer<'a> {
     /// `threads`: None for one per core.
     pub fn new(data: &'a SceneData, threads: Option<usize>) -> Result<Self, RenderError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
-        let pool = pool.map_err(|error| RenderError::Device(format!("cannot start the worker threads: {error}")))?;
+        let pool = pool.map_err(|error| RenderError::Failed(format!("cannot start the worker threads: {error}")))?;
         Ok(Self { data, pool, hits: Vec::new() })
     }
 
@@ -154,7 +154,7 @@ impl VulkanTracer {
         let constants = specialisation(&scene, data);
         let compile = |name: &str| {
             let words = shaders::kernel(name, scene.fetch())
-                .ok_or_else(|| VulkanError::Device(format!("this program was built without the kernel {name}")))?;
+                .ok_or_else(|| RenderError::Failed(format!("this program was built without the kernel {name}")))?;
             context.kernel(name, words, &constants, size_of::<Batch>())
         };
         let (closest, any) = (compile("bench_closest")?, compile("bench_any")?);
@@ -177,7 +177,7 @@ impl VulkanTracer {
     }
 
     /// Buffers for `count` rays, bound to the kernel.
-    fn bind(&mut self, any: bool, count: usize) -> Result<Work, VulkanError> {
+    fn bind(&mut self, any: bool, count: usize) -> Result<Work, RenderError> {
         let bytes = |record: usize| (count * record) as u64;
         let rays = self.context.buffer("rays", bytes(size_of::<ShadowRay>()), Place::Device)?;
         let hits = self.context.buffer("hits", bytes(size_of::<Hit>()), Place::Device)?;
@@ -197,7 +197,7 @@ impl VulkanTracer {
         Ok(Work { bound, rays, hits, count: count as u32, chunk: FIRST_DISPATCH })
     }
 
-    fn load(&mut self, set: &RaySet) -> Result<(), VulkanError> {
+    fn load(&mut self, set: &RaySet) -> Result<(), RenderError> {
         self.work = None; // its memory first
         let mut work = self.bind(set.kind.is_any(), set.rays.len().max(1))?;
         work.count = set.rays.len() as u32;
@@ -227,7 +227,7 @@ impl VulkanTracer {
     }
 
     /// One submission of one dispatch.
-    fn dispatch(&mut self, work: &Work, rays: std::ops::Range<u32>) -> Result<Submission, VulkanError> {
+    fn dispatch(&mut self, work: &Work, rays: std::ops::Range<u32>) -> Result<Submission, RenderError> {
         let batch = Batch {
             first_pixel: rays.start,
             slot_count: rays.len().min(work.count as usize) as u32,
@@ -240,7 +240,7 @@ impl VulkanTracer {
         })
     }
 
-    fn run(&mut self, set: &RaySet) -> Result<Timing, VulkanError> {
+    fn run(&mut self, set: &RaySet) -> Result<Timing, RenderError> {
         let work = self.work.as_ref().expect("loaded by the caller");
         debug_assert_eq!(work.count as usize, set.rays.len(), "the rays that were loaded");
         let firsts: Vec<u32> = (0..work.count).step_by(work.chunk as usize).collect();
@@ -261,7 +261,7 @@ impl VulkanTracer {
         Ok(timing)
     }
 
-    fn download(&mut self) -> Result<Vec<Hit>, VulkanError> {
+    fn download(&mut self) -> Result<Vec<Hit>, RenderError> {
         let Some(work) = &self.work else { return Ok(Vec::new()) };
         let (hits, count) = (work.hits.clone(), work.count as usize);
         self.context.download(&hits, 0, count)

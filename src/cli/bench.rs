@@ -1,11 +1,12 @@
 //! `gonio bench`: how fast rays are traced, with every hit verified.
 
-use super::EXIT_DIFFERS;
 use super::parity::Contender;
 use super::setup::{
-    BackendFlags, BackendName, FetchName, IntegratorName, SceneFlags, bake_scene, film_of, thread_count,
+    BackendFlags, BackendName, FetchName, IntegratorName, SceneFlags, bake_scene, bake_scene_with, film_of,
+    thread_count,
 };
-use crate::bake::SceneData;
+use super::{EXIT_DIFFERS, team};
+use crate::bake::{Baker, SceneData};
 use crate::bench::export::export;
 use crate::bench::hierarchy::size_of_scene;
 use crate::bench::image::{self, frame_of};
@@ -307,6 +308,7 @@ impl BenchArgs {
         // The one it was baked for comes first, so that no two baked scenes are held at a time.
         let mut names = IntegratorName::value_variants().to_vec();
         names.sort_by_key(|name| Integrator::from(*name) != scene.settings.integrator);
+        let mut baker = Baker::after(scene, &data);
         let mut baked = Some(data);
         let mut reports = Vec::new();
         for name in names {
@@ -314,22 +316,24 @@ impl BenchArgs {
                 Some(data) => data,
                 None => {
                     scene.settings.integrator = name.into();
-                    bake_scene(scene)?
+                    bake_scene_with(scene, Some(&mut baker), &|| false)?
                 }
             };
-            let mut renderers = Vec::new();
+            let film = film_of(scene, &data, frame);
+            let mut sessions = Vec::new();
             for Contender { label, flags } in contenders {
                 // As large pictures are rendered; in the middle of a run would be too late.
                 let flags = BackendFlags { group_from: Some(0), ..flags.clone() };
-                match flags.renderer(&data) {
-                    Ok(renderer) => renderers.push((label.clone(), renderer)),
+                let session = team::session(&flags, &data, film.clone())?;
+                match session.open() {
+                    Ok(()) => sessions.push((label.clone(), session)),
                     Err(RenderError::NoDevice(_)) if self.on.is_empty() && self.device.is_none() => {}
                     Err(error) => return Err(error.into()),
                 }
             }
             let text = name.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
             log::info!("{}: {text} samples", scene.name);
-            reports.push(image::measure(&text, &film_of(scene, &data, frame), &mut renderers, self.plan())?);
+            reports.push(image::measure(&text, &film, &sessions, self.plan())?);
         }
         Ok(reports)
     }

@@ -2,20 +2,21 @@
 
 use super::Usage;
 use super::interrupt::Interrupt;
-use super::setup::{BackendFlags, SceneFlags, bake_scene, film_of};
+use super::setup::{BackendFlags, SceneFlags, bake_scene_with, film_of};
 use super::sheet::{self, Sheet};
+use super::team;
+use crate::bake::Baker;
 use crate::film::{Film, FilmError, OutputFile, Rect};
 use crate::plot::figure::Frame;
 use crate::plot::lecture::{caption, numbered, plots};
 use crate::plot::page::{Entry, Part, page};
 use crate::plot::panels::Picture;
 use crate::plot::{Figure, Format, render};
-use crate::render::{Job, Watch};
 use crate::scene::{Location, Scene, SceneError};
+use crate::watch::Watch;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::AtomicBool;
 
 /// Width of the page's plots, pixels: a telephone shows it without loss.
 const PLOT: u32 = 500;
@@ -83,9 +84,10 @@ fn entry_of(path: &Path, folder: &Path, flags: &SceneFlags, backend: &BackendFla
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let sheet = Sheet::open(flags, path)?;
     let mut films = Vec::new();
+    let mut baker = sheet.is_divided().then(Baker::default);
     for scene in sheet.scenes() {
         let (label, scene) = scene?;
-        films.push((label.map(str::to_owned), film(&scene, backend)?));
+        films.push((label.map(str::to_owned), film(&scene, baker.as_mut(), backend)?));
     }
     let pictures: Vec<_> = films.iter().map(|(label, film)| (label.clone(), sheet::displayed(film, 255))).collect();
     let whole = sheet::composed(&sheet, &pictures)?;
@@ -105,12 +107,11 @@ fn entry_of(path: &Path, folder: &Path, flags: &SceneFlags, backend: &BackendFla
 }
 
 /// All samples of the scene.
-fn film(scene: &Scene, backend: &BackendFlags) -> anyhow::Result<Film> {
-    let data = bake_scene(scene)?;
-    let mut film = film_of(scene, &data, Rect::whole(scene.film.width, scene.film.height));
-    let mut renderer = backend.renderer(&data)?;
-    log::info!("{} on {}", scene.name, renderer.name());
-    let watch = Watch { abort: &AtomicBool::new(false), advance: &|_| {} };
-    renderer.accumulate(&Job { crop: film.crop(), samples: 0..scene.settings.samples }, &mut film, &watch)?;
-    Ok(film)
+fn film(scene: &Scene, baker: Option<&mut Baker>, backend: &BackendFlags) -> anyhow::Result<Film> {
+    let data = bake_scene_with(scene, baker, &|| false)?;
+    let film = film_of(scene, &data, Rect::whole(scene.film.width, scene.film.height));
+    let session = team::session(backend, &data, film)?;
+    session.render(0..scene.settings.samples, &Watch::default())?;
+    log::info!("{} on {}", scene.name, session.names().join(" + "));
+    Ok(session.into_film())
 }

@@ -85,7 +85,7 @@ pub fn main() -> ExitCode {
         (true, _) => log::LevelFilter::Error,
         (_, 0) => log::LevelFilter::Warn,
         (_, 1) => log::LevelFilter::Info,
-        _ => log::LevelFilter::Debug,
+        _ => log::LevelFilter::Trace,
     };
     env_logger::Builder::new()
         .filter_level(log::LevelFilter::Warn)
@@ -155,8 +155,11 @@ fn exit_code(error: &anyhow::Error) -> u8 {
         if let Some(error) = cause.downcast_ref::<RenderError>() {
             return match error {
                 RenderError::NoDevice(_) => EXIT_NO_DEVICE,
-                RenderError::Device(_) => EXIT_DEVICE,
                 RenderError::Aborted => EXIT_INTERRUPTED,
+                RenderError::OutOfMemory(_)
+                | RenderError::Lost(_)
+                | RenderError::TooLarge(_)
+                | RenderError::Failed(_) => EXIT_DEVICE,
             };
         }
         if let Some(error) = cause.downcast_ref::<FilmError>() {

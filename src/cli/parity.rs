@@ -1,12 +1,14 @@
 //! `gonio parity`: the same samples on two backends, bit for bit.
 
-use super::setup::{BackendFlags, BackendName, FetchName, SceneFlags, bake_scene, film_of, thread_count};
+use super::setup::{BackendFlags, BackendName, FetchName, SceneFlags, bake_scene_with, film_of, thread_count};
 use super::sheet::Sheet;
-use super::{EXIT_DIFFERS, Usage, render};
-use crate::bake::SceneData;
+use super::{EXIT_DIFFERS, Usage, render, team};
+use crate::bake::{Baker, SceneData};
 use crate::film::{Film, Rect};
-use crate::render::{Bounce, Job, RenderError, Renderer, Watch};
+use crate::render::session::Session;
+use crate::render::{Bounce, RenderError};
 use crate::scene::Scene;
+use crate::watch::Watch;
 use anyhow::Context;
 use clap::Args;
 use std::collections::BTreeMap;
@@ -14,7 +16,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
-use std::sync::atomic::AtomicBool;
 
 #[derive(Args)]
 #[command(after_help = "\
@@ -131,9 +132,11 @@ pub fn run(args: &ParityArgs, _quiet: bool) -> anyhow::Result<ExitCode> {
     let mut agree = true;
     for path in &args.scenes {
         let sheet = Sheet::open(&args.scene_flags, path)?;
+        let mut baker = sheet.is_divided().then(Baker::default);
         for scene in sheet.scenes() {
             let (label, scene) = scene?;
-            let result = args.compare_scene(path, label, &scene, &contenders)?;
+            let data = bake_scene_with(&scene, baker.as_mut(), &|| false)?;
+            let result = args.compare_scene(path, label, &scene, &data, &contenders)?;
             agree &= result.comparisons.iter().all(|comparison| comparison.differ == 0);
             if !args.json {
                 print_result(&result)?;
@@ -186,21 +189,21 @@ impl ParityArgs {
         path: &Path,
         panel: Option<&str>,
         scene: &Scene,
+        data: &SceneData,
         contenders: &[Contender],
     ) -> anyhow::Result<SceneResult> {
-        let data = bake_scene(scene)?;
-        let mut reference = contenders[0].flags.renderer(&data)?;
-        let film = render_all(reference.as_mut(), scene, &data)?;
+        let reference = render_all(&contenders[0].flags, scene, data)?;
+        let film = reference.snapshot();
         let mut comparisons = Vec::new();
         for contender in &contenders[1..] {
-            let mut renderer = contender.flags.renderer(&data)?;
-            let other = render_all(renderer.as_mut(), scene, &data)?;
+            let session = render_all(&contender.flags, scene, data)?;
+            let other = session.snapshot();
             comparisons.push(Comparison {
                 reference: contenders[0].label.clone(),
-                other: format!("{} ({})", contender.label, renderer.name()),
+                other: format!("{} ({})", contender.label, session.names().join(" + ")),
                 pixels: film.sums().len(),
                 differ: film.sums().iter().zip(other.sums()).filter(|(a, b)| a != b).count(),
-                first: first_difference(scene, (&film, reference.as_mut()), (&other, renderer.as_mut()))?,
+                first: first_difference(scene, (&film, &reference), (&other, &session))?,
             });
         }
         Ok(SceneResult {
@@ -216,27 +219,26 @@ impl ParityArgs {
     }
 }
 
-fn render_all(renderer: &mut dyn Renderer, scene: &Scene, data: &SceneData) -> Result<Film, RenderError> {
-    let crop = Rect::whole(scene.film.width, scene.film.height);
-    let mut film = film_of(scene, data, crop);
-    let abort = AtomicBool::new(false);
-    let watch = Watch { abort: &abort, advance: &|_| {} };
-    renderer.accumulate(&Job { crop, samples: 0..scene.settings.samples }, &mut film, &watch)?;
-    Ok(film)
+/// All samples of the scene.
+fn render_all<'a>(flags: &BackendFlags, scene: &Scene, data: &'a SceneData) -> anyhow::Result<Session<'a>> {
+    let film = film_of(scene, data, Rect::whole(scene.film.width, scene.film.height));
+    let session = team::session(flags, data, film)?;
+    session.render(0..scene.settings.samples, &Watch::default())?;
+    Ok(session)
 }
 
 /// Finds the first pixel in reading order whose sums differ, then the first of its samples with a differing bounce.
 fn first_difference(
     scene: &Scene,
-    (film, reference): (&Film, &mut dyn Renderer),
-    (other, renderer): (&Film, &mut dyn Renderer),
+    (film, reference): (&Film, &Session),
+    (other, session): (&Film, &Session),
 ) -> Result<Option<Difference>, RenderError> {
     let Some(index) = film.sums().iter().zip(other.sums()).position(|(a, b)| a != b) else {
         return Ok(None);
     };
     let (x, y) = (index as u32 % scene.film.width, index as u32 / scene.film.width);
     for sample in 0..scene.settings.samples {
-        let (a, b) = (reference.inspect(x, y, sample)?, renderer.inspect(x, y, sample)?);
+        let (a, b) = (reference.inspect(x, y, sample)?, session.inspect(x, y, sample)?);
         if let Some(cause) = differing_bounce(&a, &b) {
             return Ok(Some(Difference { x, y, cause: format!("sample {sample}, {cause}") }));
         }

@@ -3,15 +3,16 @@
 use super::gallery;
 use super::interrupt::Interrupt;
 use super::output::{OutputFlags, print_report};
-use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, bake_scene_until, crop_of, film_of};
+use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, bake_scene_with, crop_of, film_of};
 use super::sheet::{self, Sheet};
 use super::{Usage, progress, team};
-use crate::bake::{BakeError, SceneData};
+use crate::bake::{BakeError, Baker, SceneData};
 use crate::film::write::{Aov, Format};
 use crate::film::{Film, OutputFile, Rect};
-use crate::render::team::{Member, Order, Share, render};
-use crate::render::{Bounce, Counters};
+use crate::render::session::{Session, Share};
+use crate::render::{Bounce, Counters, RenderError};
 use crate::scene::Scene;
+use crate::watch::Watch;
 use anyhow::Context;
 use clap::Args;
 use std::io::Write;
@@ -102,6 +103,8 @@ struct Outcome {
     counters: Counters,
     render_time: Duration,
     interrupted: Option<u8>,
+    /// Every device has failed; the film holds what was finished.
+    error: Option<RenderError>,
 }
 
 pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
@@ -134,10 +137,14 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
 
     let (mut films, mut stats) = (Vec::new(), Vec::new());
     let mut interrupted = None;
+    let mut failed = None;
+    let mut baker = sheet.is_divided().then(Baker::default);
     let mut scenes = sheet.scenes();
     loop {
         let mut next = || {
-            scenes.next().map(|scene| scene.and_then(|(label, scene)| Ok((label, prepare(args, scene, &interrupt)?))))
+            scenes.next().map(|scene| {
+                scene.and_then(|(label, scene)| Ok((label, prepare(args, scene, baker.as_mut(), &interrupt)?)))
+            })
         };
         let prepared = if films.is_empty() {
             let unfinished: Vec<&OutputFile> = std::iter::once(&output).chain(&stats_file).collect();
@@ -161,7 +168,8 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         films.push((label.map(str::to_owned), developed.film));
         stats.push(developed.stats);
         interrupted = developed.interrupted;
-        if interrupted.is_some() {
+        failed = developed.error;
+        if interrupted.is_some() || failed.is_some() {
             break;
         }
     }
@@ -180,7 +188,10 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         writeln!(file, "{stats:#}").with_context(|| format!("cannot write {}", file.path().display()))?;
         file.commit()?;
     }
-    Ok(interrupted.map_or(ExitCode::SUCCESS, ExitCode::from))
+    match failed {
+        Some(error) => Err(error.into()),
+        None => Ok(interrupted.map_or(ExitCode::SUCCESS, ExitCode::from)),
+    }
 }
 
 /// A rendered scene.
@@ -190,6 +201,7 @@ struct Developed {
     stats: serde_json::Value,
     seconds: f64,
     interrupted: Option<u8>,
+    error: Option<RenderError>,
 }
 
 /// A scene that is ready to be rendered.
@@ -201,12 +213,17 @@ struct Prepared {
 }
 
 /// Bakes a scene as the flags want it.
-fn prepare(args: &RenderArgs, scene: Scene, interrupt: &Interrupt) -> anyhow::Result<Prepared> {
+fn prepare(
+    args: &RenderArgs,
+    mut scene: Scene,
+    baker: Option<&mut Baker>,
+    interrupt: &Interrupt,
+) -> anyhow::Result<Prepared> {
     let crop = crop_of(&scene, args.crop)?;
+    scene.settings.aovs |= !args.aov.is_empty();
+    scene.settings.transparent |= args.transparent;
     let start = Instant::now();
-    let mut data = bake_scene_until(&scene, &|| interrupt.exit_code().is_some())?;
-    data.header.aovs = u32::from(!args.aov.is_empty());
-    data.header.hide_background |= u32::from(args.transparent);
+    let data = bake_scene_with(&scene, baker, &|| interrupt.exit_code().is_some())?;
     Ok(Prepared { scene, crop, data, bake_time: start.elapsed() })
 }
 
@@ -218,18 +235,19 @@ fn develop(
     show_progress: bool,
 ) -> anyhow::Result<Developed> {
     let Prepared { scene, crop, data, bake_time } = prepared;
-    let members = team::members(&args.backend, data)?;
-    let mut film = film_of(scene, data, *crop);
+    let session = team::session(&args.backend, data, film_of(scene, data, *crop))?;
     let samples = match (&args.samples, args.time, args.scene_flags.spp) {
         (Some(range), _, _) => range.0.clone(),
         // With a time limit and no count, the time decides.
         (None, Some(_), None) => 0..crate::film::MAX_SAMPLES,
         (None, _, _) => 0..scene.settings.samples,
     };
-    let outcome = render_samples(members, samples, args.time, &mut film, interrupt, show_progress)?;
+    let outcome = render_samples(&session, samples, args.time, interrupt, show_progress)?;
+    let film = session.into_film();
     report(&film, &outcome.counters);
     let stats = stats_json(args, data, &film, &outcome, *bake_time);
-    Ok(Developed { film, stats, seconds: outcome.render_time.as_secs_f64(), interrupted: outcome.interrupted })
+    let seconds = outcome.render_time.as_secs_f64();
+    Ok(Developed { film, stats, seconds, interrupted: outcome.interrupted, error: outcome.error })
 }
 
 /// The scene's name in the current folder, as a PNG; standard input makes `out.png`.
@@ -241,26 +259,33 @@ fn default_output(scene: &Path) -> PathBuf {
 /// Renders range by range, each a whole number of samples for every pixel of the crop, until the samples, the time or the
 /// user's patience end.
 fn render_samples(
-    members: Vec<Member>,
+    session: &Session,
     samples: std::ops::Range<u32>,
     time: Option<Duration>,
-    film: &mut Film,
     interrupt: &Interrupt,
     show_progress: bool,
 ) -> anyhow::Result<Outcome> {
     let start = Instant::now();
-    let crop = film.crop();
-    let bar = progress::bar(crop.area() as u64 * u64::from(samples.end - samples.start), show_progress);
-    let advance = |done: i64| match u64::try_from(done) {
-        Ok(done) => bar.inc(done),
-        Err(_) => bar.dec(done.unsigned_abs()),
+    let pixels = session.snapshot().crop().area() as u64;
+    let bar = progress::bar(pixels * u64::from(samples.end - samples.start), show_progress);
+    let told = |steps: i64| match u64::try_from(steps) {
+        Ok(steps) => bar.inc(steps),
+        Err(_) => bar.dec(steps.unsigned_abs()),
     };
-    let stop = || interrupt.exit_code().is_some();
-    let shares = render(members, &Order { crop, samples, time, stop: &stop, advance: &advance }, film)?;
+    let asked = || interrupt.exit_code().is_some();
+    let watch = Watch::default().asking(&asked).telling(&told);
+    let watch = if let Some(time) = time { watch.limited(time) } else { watch };
+    let rendered = session.render(samples, &watch);
     bar.finish_and_clear();
+    let (shares, error) = match rendered {
+        Ok(shares) => (shares, None),
+        // What was finished is saved.
+        Err(error) if session.snapshot().samples().total() > 0 => (Vec::new(), Some(error)),
+        Err(error) => return Err(error.into()),
+    };
     let mut counters = Counters::default();
     shares.iter().for_each(|share| counters += share.counters);
-    Ok(Outcome { shares, counters, render_time: start.elapsed(), interrupted: interrupt.exit_code() })
+    Ok(Outcome { shares, counters, render_time: start.elapsed(), interrupted: interrupt.exit_code(), error })
 }
 
 /// Says what the user should know of the samples.
@@ -311,9 +336,9 @@ fn stats_json(
         "bake_s": bake_time.as_secs_f64(),
         "rays_per_s": rays as f64 / seconds.max(1e-9),
         "counters": outcome.counters,
-        "triangles": data.triangles.len(),
+        "triangles": data.shapes.triangles.len(),
         "instances": data.instances.len(),
-        "nodes": data.nodes.len(),
+        "nodes": data.shapes.nodes.len(),
         "lights": data.lights.len(),
     })
 }
@@ -342,10 +367,15 @@ fn inspect(args: &RenderArgs, sheet: &Sheet, pixel: Pixel) -> anyhow::Result<Exi
     }
     let data = bake_scene(&scene)?;
     let sample = args.samples.as_ref().map_or(0, |range| range.0.start);
-    let mut renderer = args.backend.renderer(&data)?;
-    let bounces = renderer.inspect(pixel.x, pixel.y, sample)?;
+    let frame = Rect::whole(scene.film.width, scene.film.height);
+    let session = team::session(&args.backend, &data, film_of(&scene, &data, frame))?;
+    if session.names().len() > 1 {
+        let device = args.backend.device.as_deref().unwrap_or_default();
+        return Err(RenderError::NoDevice(format!("--device {device}: this command takes one device")).into());
+    }
+    let bounces = session.inspect(pixel.x, pixel.y, sample)?;
     let mut out = std::io::stdout().lock();
-    writeln!(out, "pixel {},{} sample {sample} on {}", pixel.x, pixel.y, renderer.name())?;
+    writeln!(out, "pixel {},{} sample {sample} on {}", pixel.x, pixel.y, session.names()[0])?;
     for bounce in &bounces {
         print_bounce(&mut out, bounce)?;
     }

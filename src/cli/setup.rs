@@ -1,12 +1,11 @@
 //! What render, parity and others share: from flags to a baked scene and a renderer.
 
-use super::{Usage, exact, progress, team};
-use crate::bake::{SceneData, Watch, bake_watched};
+use super::{Usage, progress};
+use crate::bake::{Baker, SceneData, bake_watched};
 use crate::film::{Film, FilmSpec, Rect};
-use crate::render::cpu::CpuRenderer;
-use crate::render::vulkan::{FetchChoice, VulkanOptions, VulkanRenderer};
-use crate::render::{RenderError, Renderer};
+use crate::render::vulkan::{FetchChoice, VulkanOptions};
 use crate::scene::{Integrator, Scene, Window, load};
+use crate::watch::Watch;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use std::path::Path;
@@ -168,14 +167,23 @@ impl SceneFlags {
 
 /// Bakes a scene and prints what baking dropped.
 pub fn bake_scene(scene: &Scene) -> anyhow::Result<SceneData> {
-    bake_scene_until(scene, &|| false)
+    bake_scene_with(scene, None, &|| false)
 }
 
-/// The same; gives up with `BakeError::Aborted` when `abort` says so.
-pub fn bake_scene_until(scene: &Scene, abort: &(dyn Fn() -> bool + Sync)) -> anyhow::Result<SceneData> {
+/// The same. `baker`: of scenes that may share their shapes. Gives up with `BakeError::Aborted` when `asked` says so.
+pub fn bake_scene_with(
+    scene: &Scene,
+    baker: Option<&mut Baker>,
+    asked: &(dyn Fn() -> bool + Sync),
+) -> anyhow::Result<SceneData> {
     let bar = progress::baking(scene);
     log::info!("{}: baking", scene.name);
-    let data = bake_watched(scene, &Watch { abort, advance: &|count| bar.inc(count) });
+    let told = |steps: i64| bar.inc(steps.unsigned_abs());
+    let watch = Watch::default().asking(asked).telling(&told);
+    let data = match baker {
+        Some(baker) => baker.bake(scene, &watch),
+        None => bake_watched(scene, &watch),
+    };
     bar.finish_and_clear();
     let data = data.with_context(|| scene.name.clone())?;
     for warning in &data.warnings {
@@ -186,10 +194,13 @@ pub fn bake_scene_until(scene: &Scene, abort: &(dyn Fn() -> bool + Sync)) -> any
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum BackendName {
-    /// A Vulkan device if there is one (discrete, integrated, virtual, software in this order), else the CPU.
+    /// A GPU if there is one (discrete, integrated, virtual in this order), else the CPU, which also goes on with the picture
+    /// where the GPU fails.
     #[default]
     Auto,
+    /// A Vulkan device, a software one if there is no other.
     Vulkan,
+    /// All cores of this machine.
     Cpu,
 }
 
@@ -247,37 +258,6 @@ pub struct BackendFlags {
 }
 
 impl BackendFlags {
-    /// The renderer the flags ask for, its device proved exact or warned of. The CPU backend is exact by definition.
-    pub fn renderer<'a>(&self, data: &'a SceneData) -> Result<Box<dyn Renderer + 'a>, RenderError> {
-        let vulkan = || VulkanRenderer::new(data, self.vulkan_options());
-        match self.backend {
-            BackendName::Cpu => Ok(Box::new(CpuRenderer::new(data, self.threads)?)),
-            BackendName::Auto if self.device.as_deref() == Some(team::CPU) => {
-                Ok(Box::new(CpuRenderer::new(data, self.threads)?))
-            }
-            _ if self.device.as_deref() == Some(team::ALL) => {
-                Err(RenderError::NoDevice("--device all: this command takes one device".to_owned()))
-            }
-            BackendName::Vulkan => self.proved(vulkan()?),
-            BackendName::Auto if self.device.is_some() => self.proved(vulkan()?),
-            BackendName::Auto => match vulkan() {
-                Ok(renderer) => self.proved(renderer),
-                Err(RenderError::NoDevice(reason)) => {
-                    // A scene of panels opens a renderer for each: once is enough.
-                    static SAID: std::sync::Once = std::sync::Once::new();
-                    SAID.call_once(|| log::warn!("{reason}: using the CPU backend"));
-                    Ok(Box::new(CpuRenderer::new(data, self.threads)?))
-                }
-                Err(error) => Err(error),
-            },
-        }
-    }
-
-    fn proved<'a>(&self, mut renderer: VulkanRenderer) -> Result<Box<dyn Renderer + 'a>, RenderError> {
-        exact::check(renderer.context_mut(), self.require_exact)?;
-        Ok(Box::new(renderer))
-    }
-
     /// What the flags say of a Vulkan device.
     pub fn vulkan_options(&self) -> VulkanOptions {
         VulkanOptions {

@@ -1,19 +1,52 @@
-//! `--device`: one device, a list, or all.
+//! From flags to the devices of a session: `--backend` and `--device`, which names one device, a list, or all.
 
-use super::Usage;
 use super::setup::{BackendFlags, BackendName};
+use super::{Usage, exact};
 use crate::bake::SceneData;
+use crate::film::Film;
 use crate::render::RenderError;
-use crate::render::team::Member;
-use crate::render::vulkan::{DeviceChoice, DeviceInfo, Instance};
+use crate::render::cpu::CpuRenderer;
+use crate::render::session::{Member, Session};
+use crate::render::vulkan::{DeviceChoice, DeviceInfo, DeviceKind, Instance, VulkanRenderer};
+use std::sync::OnceLock;
 
 /// What `--device` calls the CPU backend.
 pub const CPU: &str = "cpu";
 /// What it calls everything there is.
 pub const ALL: &str = "all";
 
+/// A session with the devices that the flags ask for.
+pub fn session<'a>(flags: &BackendFlags, data: &'a SceneData, film: Film) -> anyhow::Result<Session<'a>> {
+    let is_open = flags.backend == BackendName::Auto && flags.device.is_none();
+    // What nobody chose is made up for when it fails.
+    let (members, reserve) = match best_gpu().filter(|_| is_open) {
+        Some(index) => {
+            let device = Some(index.to_string());
+            let gpu = BackendFlags { backend: BackendName::Vulkan, device, ..flags.clone() };
+            (vec![member(gpu, data)], Some(cpu_member(flags, data)))
+        }
+        None => (members(flags, data)?, None),
+    };
+    Ok(Session::new(film, members).with_reserve(reserve))
+}
+
+/// Index of the GPU that suits best. Software devices share the processor with the CPU backend, which is faster.
+fn best_gpu() -> Option<usize> {
+    static FOUND: OnceLock<Option<usize>> = OnceLock::new();
+    *FOUND.get_or_init(|| {
+        let found = Instance::new(false).and_then(|instance| instance.devices());
+        let devices = found.unwrap_or_else(|error| {
+            log::info!("{error}");
+            Vec::new()
+        });
+        let is_gpu = |device: &DeviceInfo| device.is_usable() && device.kind != DeviceKind::Cpu;
+        let gpus: Vec<DeviceInfo> = devices.into_iter().filter(is_gpu).collect();
+        DeviceChoice::Auto.pick(&gpus).ok().map(|device| device.index)
+    })
+}
+
 /// The renderers that the flags ask for.
-pub fn members<'a>(flags: &BackendFlags, data: &'a SceneData) -> anyhow::Result<Vec<Member<'a>>> {
+fn members<'a>(flags: &BackendFlags, data: &'a SceneData) -> anyhow::Result<Vec<Member<'a>>> {
     let one = || vec![member(flags.clone(), data)];
     let Some(text) = flags.device.as_deref().filter(|text| *text == ALL || text.contains(',')) else {
         return Ok(one());
@@ -44,7 +77,7 @@ pub fn members<'a>(flags: &BackendFlags, data: &'a SceneData) -> anyhow::Result<
         } else {
             let devices = found.as_deref().map_err(|error| RenderError::NoDevice(error.to_string()))?;
             let Ok(choice) = name.parse::<DeviceChoice>();
-            (BackendName::Vulkan, choice.pick(devices).map_err(RenderError::from)?.index.to_string())
+            (BackendName::Vulkan, choice.pick(devices)?.index.to_string())
         };
         if taken.contains(&device) {
             return Err(Usage(format!("--device {text}: \"{name}\" is device {device}, which is named already")).into());
@@ -61,8 +94,27 @@ fn everything(devices: &[DeviceInfo], backend: BackendName) -> Vec<String> {
     usable.chain((backend == BackendName::Auto).then(|| CPU.to_owned())).collect()
 }
 
-/// The one renderer that `flags` ask for.
+/// The one renderer that `flags` ask for: a Vulkan device proved exact or warned of, or the CPU backend, which is exact by
+/// definition.
 fn member(flags: BackendFlags, data: &SceneData) -> Member<'_> {
-    let name = flags.device.clone().map_or_else(|| "the renderer".to_owned(), |name| format!("device {name}"));
-    Member { name, open: Box::new(move || flags.renderer(data)) }
+    let is_cpu = match flags.backend {
+        BackendName::Cpu => true,
+        BackendName::Vulkan => false,
+        BackendName::Auto => flags.device.as_deref().is_none_or(|device| device == CPU),
+    };
+    if is_cpu {
+        return cpu_member(&flags, data);
+    }
+    let name = flags.device.clone().map_or_else(|| "the Vulkan device".to_owned(), |name| format!("device {name}"));
+    let open = move || {
+        let mut renderer = VulkanRenderer::new(data, flags.vulkan_options())?;
+        exact::check(renderer.context_mut(), flags.require_exact)?;
+        Ok(Box::new(renderer) as _)
+    };
+    Member::new(name, Box::new(open))
+}
+
+fn cpu_member<'a>(flags: &BackendFlags, data: &'a SceneData) -> Member<'a> {
+    let threads = flags.threads;
+    Member::new("the CPU backend", Box::new(move || Ok(Box::new(CpuRenderer::new(data, threads)?) as _)))
 }

@@ -1,21 +1,20 @@
 //! `gonio verify`: proofs, as one table.
 
 use super::setup::{BackendFlags, bake_scene, crop_of, film_of};
-use super::{EXIT_DIFFERS, Usage, functions};
+use super::{EXIT_DIFFERS, Usage, functions, team};
 use crate::film::read::read_picture;
 use crate::film::{Film, FilmError, Image, OutputFile, write};
-use crate::render::{Job, Watch};
 use crate::scene::{Scene, load};
 use crate::verify::mitsuba::{
     ACCEPTED_MIN, Case, DisplayTest, Reference, display_test, find_cases, reduce, samples_for, show_z, z_test,
 };
 use crate::verify::report::{Outcome, Row, all_proved, table};
+use crate::watch::Watch;
 use anyhow::Context;
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Side of a block of the documentation's pictures that is compared as one pixel: below it, filters and JPEG differ.
@@ -204,14 +203,10 @@ fn render(args: &VerifyArgs, scene: &Scene, samples: u32, row: &mut Row) -> anyh
         log::info!("{warning}");
     }
     let data = bake_scene(scene)?;
-    let mut renderer = args.backend.renderer(&data)?;
-    row.backend = renderer.name();
-    let crop = crop_of(scene, None)?;
-    let mut film = film_of(scene, &data, crop);
-    let abort = AtomicBool::new(false);
-    let watch = Watch { abort: &abort, advance: &|_| {} };
-    renderer.accumulate(&Job { crop, samples: 0..samples }, &mut film, &watch)?;
-    Ok(film)
+    let session = team::session(&args.backend, &data, film_of(scene, &data, crop_of(scene, None)?))?;
+    session.render(0..samples, &Watch::default())?;
+    row.backend = session.names().join(" + ");
+    Ok(session.into_film())
 }
 
 fn keep_exr(path: &Path, image: &Image) -> anyhow::Result<()> {

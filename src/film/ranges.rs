@@ -71,6 +71,22 @@ impl SampleRanges {
         None
     }
 
+    /// What of `range` is not in the set, in ascending order.
+    pub fn missing(&self, range: Range<u32>) -> Vec<Range<u32>> {
+        let mut missing = Vec::new();
+        let mut start = range.start;
+        for here in &self.0 {
+            if start < here.start.min(range.end) {
+                missing.push(start..here.start.min(range.end));
+            }
+            start = start.max(here.end);
+        }
+        if start < range.end {
+            missing.push(start..range.end);
+        }
+        missing
+    }
+
     pub fn contains(&self, sample: u32) -> bool {
         self.0.iter().any(|r| r.contains(&sample))
     }

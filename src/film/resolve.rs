@@ -1,7 +1,10 @@
 //! From sums to numbers.
 
 use super::Film;
-use super::sums::FRACTION_BITS;
+use crate::layout::FRACTION_BITS;
+
+/// Exponent of the smallest step of a sum without a unit.
+const STEP: i32 = -(FRACTION_BITS as i32);
 
 /// Linear Rec. 709 and alpha (coverage), rows from the top; r, g, b are premultiplied where alpha means something.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,8 +41,8 @@ impl Film {
     /// The picture: each sum times 2^-(22 - e), alpha times 2^-22, divided by the number of samples in f64, rounded to f32.
     /// Black and empty for a film without samples.
     pub fn resolve(&self) -> Image {
-        let light = self.spec.unit_exponent - FRACTION_BITS;
-        let exponents = [light, light, light, -FRACTION_BITS];
+        let light = self.spec.unit_exponent + STEP;
+        let exponents = [light, light, light, STEP];
         let n = self.samples.total();
         let resolve = |sums: &[i64; 4]| std::array::from_fn(|lane| mean(sums[lane], exponents[lane], n));
         let pixels = self.sums.iter().map(resolve).collect();
@@ -50,7 +53,7 @@ impl Film {
     pub fn resolve_aovs(&self) -> Option<Aovs> {
         let aovs = self.aovs.as_ref()?;
         let n = self.samples.total();
-        let means = |sums: [i64; 3]| sums.map(|sum| mean(sum, -FRACTION_BITS, n));
+        let means = |sums: [i64; 3]| sums.map(|sum| mean(sum, STEP, n));
         Some(Aovs {
             normal: aovs.iter().map(|aov| means(aov.normal)).collect(),
             albedo: aovs.iter().map(|aov| means(aov.albedo)).collect(),

@@ -13,9 +13,6 @@ use std::path::Path;
 /// `MAX_SAMPLES` of them stay within 2^62.
 pub const SUM_BITS: u32 = 38;
 
-/// k: binary digits after the point of a film unit.
-pub const FRACTION_BITS: i32 = 22;
-
 /// What a film is of. Two films merge only if all of it agrees but the names and the defaults of display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmSpec {

@@ -11,6 +11,9 @@ pub struct FilmSum {
     pub high: [u32; 4],
 }
 
+/// Binary digits after the point of a film's sums.
+pub const FRACTION_BITS: u32 = 22;
+
 /// Auxiliary values of one pixel. 80 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]

@@ -6,11 +6,11 @@ use crate::bake::bake;
 use crate::film::{Film, FilmSpec};
 use crate::layout::INVALID;
 use crate::render::cpu::CpuRenderer;
-use crate::render::{Job, Renderer, Watch};
+use crate::render::session::{Member, Session};
 use crate::scene::Shading;
 use crate::scene::load::toml::scene_from_text;
+use crate::watch::Watch;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 /// A row of pixels across the highlight of the sphere of scenes/lecture/08-shading-models.toml.
 const SCENE: &str = include_str!("edge.toml");
@@ -27,17 +27,16 @@ pub fn profile(shading: Shading) -> Result<Profile, PlotError> {
     let mut scene = scene_from_text(Path::new("edge.toml"), SCENE.to_owned(), &[]).map_err(PlotError::new)?;
     scene.settings.shading = shading;
     let data = bake(&scene).map_err(PlotError::new)?;
-    let mut renderer = CpuRenderer::new(&data, Some(1)).map_err(PlotError::new)?;
-    let mut film = Film::new(FilmSpec::of(&scene, data.digest(), false, false));
-    let job = Job { crop: film.crop(), samples: 0..scene.settings.samples };
-    let watch = Watch { abort: &AtomicBool::new(false), advance: &|_| {} };
-    renderer.accumulate(&job, &mut film, &watch).map_err(PlotError::new)?;
+    let renderer = CpuRenderer::new(&data, Some(1)).map_err(PlotError::new)?;
+    let film = Film::new(FilmSpec::of(&scene, data.digest(), false, false));
+    let session = Session::new(film, vec![Member::of(renderer)]);
+    session.render(0..scene.settings.samples, &Watch::default()).map_err(PlotError::new)?;
     let mut triangles = Vec::new();
     for x in 0..scene.film.width {
-        let bounces = renderer.inspect(x, 0, 0).map_err(PlotError::new)?;
+        let bounces = session.inspect(x, 0, 0).map_err(PlotError::new)?;
         triangles.push(bounces.first().map_or(INVALID, |bounce| bounce.hit.primitive));
     }
-    let radiance = film.resolve().pixels.iter().map(|pixel| f64::from(pixel[1])).collect();
+    let radiance = session.into_film().resolve().pixels.iter().map(|pixel| f64::from(pixel[1])).collect();
     Ok(Profile { radiance, triangles })
 }
 

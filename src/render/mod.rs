@@ -1,13 +1,14 @@
 //! Backends. They only *schedule* the pure steps of `transport`; what is computed is the same.
 
 pub mod cpu;
-pub mod team;
+mod scheduler;
+pub mod session;
 pub mod vulkan;
 
 use crate::film::{Film, Rect};
-use crate::layout::{Hit, PathState};
+use crate::layout::{AovPixel, FilmSum, Hit, PathState};
+use crate::watch::Watch;
 use std::ops::Range;
-use std::sync::atomic::AtomicBool;
 
 /// The parts of a picture a call covers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,35 +52,62 @@ pub struct Bounce {
     pub hit: Hit,
 }
 
-/// How a call reports and is asked to stop.
-pub struct Watch<'a> {
-    /// Set from outside: abandon the call.
-    pub abort: &'a AtomicBool,
-    /// Samples finished since the last call of this function (pixels times samples).
-    pub advance: &'a (dyn Fn(u64) + Sync),
+/// The samples of a job: what they add to a film.
+#[derive(Clone, Debug, Default)]
+pub struct Pass {
+    /// Of the job's pixels, rows of the crop from the top.
+    pub sums: Vec<FilmSum>,
+    /// Likewise, or empty where the scene keeps no auxiliary values.
+    pub aovs: Vec<AovPixel>,
+    /// Contributions that were not a number, and samples whose sum was clamped.
+    pub nan_count: u64,
+    pub clamped_count: u64,
+    pub counters: Counters,
+}
+
+impl Pass {
+    /// Adds the samples of `job` to a film whose crop contains the job's and that does not hold them yet.
+    pub fn add_to(&self, job: &Job, film: &mut Film) {
+        film.add_sums(job.crop, &self.sums);
+        if !self.aovs.is_empty() {
+            film.add_aovs(job.crop, &self.aovs, job.samples.contains(&0));
+        }
+        film.record(job.samples.clone(), self.nan_count, self.clamped_count);
+        film.count_limited(self.counters.limited);
+    }
 }
 
 /// Errors of a backend.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RenderError {
     /// No such device, or it lacks a needed feature: exit code 69.
     #[error("{0}")]
     NoDevice(String),
-    /// Device lost, out of memory, scene too large: exit code 75.
+    /// The device or the host has not enough memory: exit code 75, like all that follow.
     #[error("{0}")]
-    Device(String),
-    /// `Watch::abort` was set.
+    OutOfMemory(String),
+    /// The device was lost, or never came back from its work.
+    #[error("{0}")]
+    Lost(String),
+    /// The scene or the picture exceeds a limit of the device.
+    #[error("{0}")]
+    TooLarge(String),
+    /// Anything else that a device or its driver could not do.
+    #[error("{0}")]
+    Failed(String),
+    /// The watch was cancelled.
     #[error("interrupted")]
     Aborted,
 }
 
 /// The one trait in the house: a way to compute samples.
-pub trait Renderer {
+pub trait Renderer: Send {
     /// "cpu (8 threads)" or the device's name and driver.
     fn name(&self) -> String;
 
-    /// Adds the job's samples to `film`, whose crop contains the job's. On an error the film is as it was.
-    fn accumulate(&mut self, job: &Job, film: &mut Film, watch: &Watch) -> Result<Counters, RenderError>;
+    /// Computes the job's samples; they take the place of what `pass` held, whose memory is used again. Steps of `watch` are
+    /// pixels times samples; once it is cancelled the call gives up (`RenderError::Aborted`). On an error `pass` is of no use.
+    fn render(&mut self, job: &Job, watch: &Watch, pass: &mut Pass) -> Result<(), RenderError>;
 
     /// Every step of one sample of one pixel, ordered by (depth, path id).
     fn inspect(&mut self, x: u32, y: u32, sample: u32) -> Result<Vec<Bounce>, RenderError>;

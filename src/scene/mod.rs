@@ -55,6 +55,8 @@ pub struct Scene {
     pub film: Film,
     pub settings: RenderSettings,
     pub camera: Camera,
+    /// Whether the file has a camera: if not, `camera` means nothing until the scene is staged.
+    pub has_camera: bool,
     pub background: Background,
     /// I_a.
     pub ambient: Rgb,

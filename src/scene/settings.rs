@@ -171,6 +171,10 @@ pub struct RenderSettings {
     pub rr_depth: u32,
     /// The camera sees neither what glows nor the background (path).
     pub hide_emitters: bool,
+    /// The camera does not see the background, so that alpha (coverage) means something.
+    pub transparent: bool,
+    /// Auxiliary values (depth, normal, albedo, object, material) are kept.
+    pub aovs: bool,
     /// Largest channel of what one contribution of scattered light may add to a pixel (path).
     pub clamp: Option<f32>,
     pub shadows: Shadows,

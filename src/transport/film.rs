@@ -1,10 +1,11 @@
 //! From radiance to the film's integers, whose sums do not care about order (strict rule 8).
 
-use crate::layout::FilmSum;
+use crate::layout::{FRACTION_BITS, FilmSum};
 use crate::shading::sampling::{hash_u32, unit_float};
 
-/// Scale of the sums that have no unit: alpha, normal, albedo; 2^22.
+/// Scale of the sums that have no unit: alpha, normal, albedo; 2^`FRACTION_BITS`.
 pub const AOV_SCALE: f32 = 4194304.0;
+const _: () = assert!(AOV_SCALE == (1 << FRACTION_BITS) as f32);
 /// One contribution is clamped to +-2^39 fixed-point units, twice what a sample may hold.
 const FIXED_LIMIT: f32 = 549755813888.0;
 /// A sample's sum is clamped to +-2^38 units: 2^C with C = 16, times 2^k with k = 22. High word of that limit.

@@ -1,7 +1,7 @@
 //! The scene's limit on light that has been scattered (`clamp`).
 
 use super::{Queues, add_contribution, count_limited};
-use crate::layout::SceneView;
+use crate::layout::{SceneView, ShadowRay};
 use crate::shading::math::div;
 use crate::shading::spectrum::{Spectrum, spectrum_max};
 use glam::Vec4;
@@ -32,4 +32,9 @@ pub fn add_limited(
     }
     let seen = value * factor;
     add_contribution(queues, scene.header.film_scale, slot, Vec4::new(seen.x, seen.y, seen.z, coverage), dither);
+}
+
+/// Adds the light of a shadow ray whose way is free. It has been scattered once at least.
+pub fn add_light(scene: &SceneView, shadow: &ShadowRay, queues: &mut Queues) {
+    add_limited(scene, shadow.slot, 1, shadow.contribution * shadow.weight, 0.0, shadow.dither, queues);
 }

@@ -9,11 +9,10 @@
 //! (`transport/shadow`), and a ray that passes one stays a sample of the direction it was drawn with.
 
 use super::emitter::{casts_shadow, choose_emitter, pdf_emitter, sample_emitter};
-use super::limit::add_limited;
+use super::limit::{add_light, add_limited};
 use super::local::{SHADOW_END, emitted, is_hidden_back, shading_frame};
 use super::mis::{met_weight, pass_surface};
 use super::nested::medium_absorption;
-use super::shadow::add_light;
 use super::weight::{consistent, power_heuristic, survival};
 use super::{
     DIMENSION_BSDF, DIMENSION_LIGHT, DIMENSION_LIGHT_CHOICE, DIMENSION_LOBE, DIMENSION_PANE, DIMENSION_ROULETTE,

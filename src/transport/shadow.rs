@@ -1,7 +1,7 @@
 //! What becomes of a shadow ray.
 
 use super::generate::sample_key;
-use super::limit::add_limited;
+use super::limit::add_light;
 use super::local::SHADOW_END;
 use super::textured::material_at;
 use super::{DIMENSION_LEAF, Queues, push_shadow};
@@ -11,11 +11,6 @@ use crate::shading::spectrum::{spectrum_flush, spectrum_max};
 use crate::trace::spawn::spawn_through;
 use crate::trace::surface::surface_at;
 use crate::trace::traverse::{trace_any, trace_barrier, trace_occluder};
-
-/// Adds the light of a shadow ray whose way is free. It has been scattered once at least.
-pub fn add_light(scene: &SceneView, shadow: &ShadowRay, queues: &mut Queues) {
-    add_limited(scene, shadow.slot, 1, shadow.contribution * shadow.weight, 0.0, shadow.dither, queues);
-}
 
 /// The weight of a shadow ray over the free way from its origin to `t`. Where an object that casts no shadow is in the way, no
 /// ray that a surface scatters could have found the light: it counts in full.

@@ -1,7 +1,8 @@
 //! The device that tests run on, with the validation layers listening.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
-use gonio::render::vulkan::{Context, DeviceChoice, Messages, VulkanError};
+use gonio::render::RenderError;
+use gonio::render::vulkan::{Context, DeviceChoice, Messages};
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
@@ -48,11 +49,11 @@ pub fn context() -> Option<Validated<Context>> {
             let messages = context.messages();
             Some(Validated::new(context, messages))
         }
-        Err(error @ VulkanError::Device(_)) => panic!("{error}"),
-        Err(error) => {
-            skip(&error.to_string(), is_required());
+        Err(RenderError::NoDevice(reason)) => {
+            skip(&reason, is_required());
             None
         }
+        Err(error) => panic!("{error}"),
     }
 }
 

@@ -141,9 +141,12 @@ pub fn empty_scene() -> Scene {
             rr_depth: 5,
             clamp: None,
             hide_emitters: false,
+            transparent: false,
+            aovs: false,
             shadows: Shadows::Opaque,
             shading: Shading::Phong,
         },
+        has_camera: true,
         camera: Camera {
             eye: Vec3::new(0.0, 0.0, 5.0),
             target: Vec3::ZERO,

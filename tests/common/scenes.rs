@@ -9,11 +9,11 @@ pub use assets::asset;
 use gonio::bake::{SceneData, bake};
 use gonio::film::{Film, FilmSpec};
 use gonio::render::cpu::CpuRenderer;
-use gonio::render::{Job, Renderer, Watch};
+use gonio::render::{Counters, Job, Pass, Renderer};
 use gonio::scene::{Scene, load};
+use gonio::watch::Watch;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 /// What to render of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -60,11 +60,16 @@ pub fn film(scene: &Scene, data: &SceneData) -> Film {
 /// Renders a range of samples of the whole frame.
 pub fn render(renderer: &mut dyn Renderer, scene: &Scene, data: &SceneData, samples: Range<u32>) -> Film {
     let mut film = film(scene, data);
-    let abort = AtomicBool::new(false);
-    let watch = Watch { abort: &abort, advance: &|_| {} };
-    let crop = film.crop();
-    renderer.accumulate(&Job { crop, samples }, &mut film, &watch).unwrap();
+    accumulate(renderer, &mut film, samples);
     film
+}
+
+/// Adds samples of all pixels of a film.
+pub fn accumulate(renderer: &mut dyn Renderer, film: &mut Film, samples: Range<u32>) -> Counters {
+    let (job, mut pass) = (Job { crop: film.crop(), samples }, Pass::default());
+    renderer.render(&job, &Watch::default(), &mut pass).unwrap();
+    pass.add_to(&job, film);
+    pass.counters
 }
 
 /// All samples on the CPU backend.

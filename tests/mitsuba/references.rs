@@ -4,13 +4,11 @@ use super::assets;
 use gonio::bake::bake;
 use gonio::film::read::read_picture;
 use gonio::render::cpu::CpuRenderer;
-use gonio::render::{Job, Renderer, Watch};
 use gonio::scene::load::load;
 use gonio::scene::load::mitsuba::NO_MEDIA;
 use gonio::scene::{Fresnel, Model};
 use gonio::verify::mitsuba::{Case, Reference, find_cases, z_test};
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 #[test]
 fn every_scene_with_a_reference_loads_but_those_with_media() {
@@ -59,10 +57,7 @@ fn accepted(scene: &Path, mean: &Path, variance: &Path, samples: u32) -> f64 {
     let scene = load(scene, &[]).unwrap_or_else(|error| panic!("{error}"));
     let data = bake(&scene).expect("a scene that bakes");
     let mut film = super::scenes::film(&scene, &data);
-    let crop = film.crop();
-    let watch = Watch { abort: &AtomicBool::new(false), advance: &|_| {} };
-    let mut renderer = CpuRenderer::new(&data, None).expect("a renderer");
-    renderer.accumulate(&Job { crop, samples: 0..samples }, &mut film, &watch).expect("rendered");
+    super::scenes::accumulate(&mut CpuRenderer::new(&data, None).expect("a renderer"), &mut film, 0..samples);
     let read = |path: &Path| read_picture(path).expect("a reference").image;
     z_test(&film.resolve(), &read(mean), &read(variance), samples).accepted
 }

@@ -219,6 +219,7 @@ void store_constants() {
     constants[136] = SCENE_HEADER_WORDS;
     constants[137] = BATCH_WORDS;
     constants[138] = PATH_BEHIND_SHADOWLESS;
+    constants[139] = FRACTION_BITS;
 }
 
 void main() {

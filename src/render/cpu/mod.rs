@@ -1,8 +1,7 @@
 //! The reference backend: the transport steps called in a loop, tiles shared out by rayon.
 
-use super::{Bounce, Counters, Job, RenderError, Renderer, Watch};
+use super::{Bounce, Counters, Job, Pass, RenderError, Renderer};
 use crate::bake::SceneData;
-use crate::film::Film;
 use crate::layout::{AovPixel, Batch, FilmSum, SceneView};
 use crate::trace::traverse::trace_closest;
 use crate::transport::Queues;
@@ -10,6 +9,7 @@ use crate::transport::begin::begin_path;
 use crate::transport::film::resolve_sample;
 use crate::transport::shade::shade;
 use crate::transport::shadow::trace_shadow;
+use crate::watch::Watch;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -48,7 +48,7 @@ impl<'a> CpuRenderer<'a> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads.unwrap_or(0))
             .build()
-            .map_err(|error| RenderError::Device(format!("cannot start the worker threads: {error}")))?;
+            .map_err(|error| RenderError::Failed(format!("cannot start the worker threads: {error}")))?;
         Ok(Self { data, pool, tile_pixels: TILE_PIXELS })
     }
 
@@ -104,16 +104,19 @@ impl Renderer for CpuRenderer<'_> {
         }
     }
 
-    fn accumulate(&mut self, job: &Job, film: &mut Film, watch: &Watch) -> Result<Counters, RenderError> {
+    fn render(&mut self, job: &Job, watch: &Watch, pass: &mut Pass) -> Result<(), RenderError> {
         let scene = self.data.view();
         let pixel_count = job.crop.width as usize * job.crop.height as usize;
-        let mut sums = vec![FilmSum::default(); pixel_count];
         let want_aovs = scene.header.aovs != 0;
-        let mut aovs = vec![AovPixel::default(); if want_aovs { pixel_count } else { 0 }];
+        let Pass { sums, aovs, .. } = pass;
+        sums.clear();
+        sums.resize(pixel_count, FilmSum::default());
+        aovs.clear();
+        aovs.resize(if want_aovs { pixel_count } else { 0 }, AovPixel::default());
         let tally = Tally::default();
         let tile = self.tile_pixels;
         let run_tile = |worker: &mut Worker, first: usize, sums: &mut [FilmSum], mut aovs: Option<&mut [AovPixel]>| {
-            if watch.abort.load(Ordering::Relaxed) {
+            if watch.is_cancelled() {
                 return;
             }
             for sample in job.samples.clone() {
@@ -134,7 +137,7 @@ impl Renderer for CpuRenderer<'_> {
             tally.clamped_count.fetch_add(std::mem::take(&mut worker.clamped_count), Ordering::Relaxed);
             tally.nan_count.fetch_add(std::mem::take(&mut worker.queues.nan_count), Ordering::Relaxed);
             tally.limited_count.fetch_add(std::mem::take(&mut worker.queues.limited_count), Ordering::Relaxed);
-            (watch.advance)(sums.len() as u64 * u64::from(job.samples.end - job.samples.start));
+            watch.advance(sums.len() as i64 * i64::from(job.samples.end - job.samples.start));
         };
         self.pool.install(|| {
             if want_aovs {
@@ -150,22 +153,18 @@ impl Renderer for CpuRenderer<'_> {
                     .for_each_init(Worker::default, |worker, (index, sums)| run_tile(worker, index * tile, sums, None));
             }
         });
-        if watch.abort.load(Ordering::Relaxed) {
+        if watch.is_cancelled() {
             return Err(RenderError::Aborted);
         }
-        film.add_sums(job.crop, &sums);
-        if want_aovs {
-            film.add_aovs(job.crop, &aovs, job.samples.contains(&0));
-        }
-        film.record(job.samples.clone(), tally.nan_count.into_inner(), tally.clamped_count.into_inner());
-        let limited = tally.limited_count.into_inner();
-        film.count_limited(limited);
-        Ok(Counters {
+        pass.nan_count = tally.nan_count.into_inner();
+        pass.clamped_count = tally.clamped_count.into_inner();
+        pass.counters = Counters {
             closest_rays: tally.closest_rays.into_inner(),
             shadow_rays: tally.shadow_rays.into_inner(),
-            limited,
+            limited: tally.limited_count.into_inner(),
             ..Counters::default()
-        })
+        };
+        Ok(())
     }
 
     fn inspect(&mut self, x: u32, y: u32, sample: u32) -> Result<Vec<Bounce>, RenderError> {

@@ -4,7 +4,8 @@
 //! and driver build; anything else is as good as none. It is written under a temporary name and renamed.
 
 use super::device::DeviceInfo;
-use super::error::VulkanError;
+use super::error::call_failed;
+use crate::render::RenderError;
 use ash::vk;
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -81,7 +82,7 @@ impl PipelineCache {
         device: &ash::Device,
         info: &DeviceInfo,
         properties: &vk::PhysicalDeviceProperties,
-    ) -> Result<Self, VulkanError> {
+    ) -> Result<Self, RenderError> {
         let owner =
             Owner { vendor: properties.vendor_id, device: properties.device_id, uuid: properties.pipeline_cache_uuid };
         let path = user_cache().map(|folder| folder.join("pipelines").join(format!("{}.bin", key(info, &owner))));
@@ -94,7 +95,7 @@ impl PipelineCache {
         let info = vk::PipelineCacheCreateInfo::default().initial_data(data.unwrap_or_default());
         // SAFETY: the device is alive; the data is whole and was made by this very driver for this very device.
         let raw = unsafe { device.create_pipeline_cache(&info, None) }
-            .map_err(VulkanError::call("cannot make a pipeline cache"))?;
+            .map_err(call_failed("cannot make a pipeline cache"))?;
         Ok(Self { raw, path, loaded: data.map(blake3::hash) })
     }
 

@@ -2,12 +2,13 @@
 
 use super::cache::PipelineCache;
 use super::device::{DeviceChoice, DeviceInfo};
-use super::error::VulkanError;
+use super::error::call_failed;
 use super::instance::Instance;
 use super::kernel::{Bound, Kernel, WORKGROUP};
 use super::memory::{Buffer, Place};
 use super::record::Recorder;
 use super::validation::Messages;
+use crate::render::RenderError;
 use ash::vk;
 use bytemuck::Pod;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
@@ -35,16 +36,16 @@ pub struct Device {
     allocator: Mutex<Option<Allocator>>,
     /// `None` until the device is set up.
     pipelines: Option<PipelineCache>,
-    /// A submission never came back: nothing may be destroyed any more.
+    /// A submission was not seen to end: nothing may be destroyed any more.
     stuck: AtomicBool,
     instance: Arc<Instance>,
 }
 
 impl Device {
-    fn new(instance: Arc<Instance>, info: DeviceInfo) -> Result<Arc<Device>, VulkanError> {
+    fn new(instance: Arc<Instance>, info: DeviceInfo) -> Result<Arc<Device>, RenderError> {
         let physical = instance.physical_devices()?.get(info.index).copied();
         let physical =
-            physical.ok_or_else(|| VulkanError::NoDevice(format!("Vulkan device {} is gone", info.index)))?;
+            physical.ok_or_else(|| RenderError::NoDevice(format!("Vulkan device {} is gone", info.index)))?;
         let queues =
             [vk::DeviceQueueCreateInfo::default().queue_family_index(info.queue_family).queue_priorities(&[1.0])];
         let extensions: Vec<_> =
@@ -62,8 +63,8 @@ impl Device {
             vk::Result::ERROR_OUT_OF_HOST_MEMORY
             | vk::Result::ERROR_OUT_OF_DEVICE_MEMORY
             | vk::Result::ERROR_DEVICE_LOST
-            | vk::Result::ERROR_TOO_MANY_OBJECTS => VulkanError::Device(format!("cannot open {}: {error}", info.name)),
-            _ => VulkanError::NoDevice(format!("cannot open {}: {error}", info.name)),
+            | vk::Result::ERROR_TOO_MANY_OBJECTS => call_failed(format!("cannot open {}", info.name))(error),
+            _ => RenderError::NoDevice(format!("cannot open {}: {error}", info.name)),
         })?;
         // `Drop` destroys what was made before a failure.
         let mut device =
@@ -80,7 +81,7 @@ impl Device {
             buffer_device_address: false,
             allocation_sizes: AllocationSizes::new(32 * MIB, 16 * MIB),
         })
-        .map_err(|error| VulkanError::Device(format!("cannot manage memory of {}: {error}", device.info.name)))?;
+        .map_err(|error| RenderError::Failed(format!("cannot manage memory of {}: {error}", device.info.name)))?;
         *device.allocator.lock().unwrap_or_else(PoisonError::into_inner) = Some(allocator);
         Ok(Arc::new(device))
     }
@@ -169,7 +170,7 @@ pub struct Context {
 
 impl Context {
     /// Opens the loader and the device that `choice` means; `validate` as for `Instance::new`.
-    pub fn new(choice: &DeviceChoice, validate: bool) -> Result<Context, VulkanError> {
+    pub fn new(choice: &DeviceChoice, validate: bool) -> Result<Context, RenderError> {
         let instance = Instance::new(validate)?;
         let devices = instance.devices()?;
         let info = choice.pick(&devices)?.clone();
@@ -177,10 +178,10 @@ impl Context {
     }
 
     /// Opens one device of `instance`.
-    pub fn on(instance: Arc<Instance>, info: DeviceInfo) -> Result<Context, VulkanError> {
+    pub fn on(instance: Arc<Instance>, info: DeviceInfo) -> Result<Context, RenderError> {
         let device = Device::new(instance, info)?;
         let (raw, info) = (device.raw(), device.info());
-        let failed = || VulkanError::call(format!("cannot set up {}", info.name));
+        let failed = || call_failed(format!("cannot set up {}", info.name));
         // SAFETY: the queue was asked for when the device was made.
         let queue = unsafe { raw.get_device_queue(info.queue_family, 0) };
         // `Drop` destroys what was made before a failure.
@@ -238,7 +239,7 @@ impl Context {
     }
 
     /// A buffer of `size` bytes with undefined contents.
-    pub fn buffer(&self, name: &str, size: u64, place: Place) -> Result<Buffer, VulkanError> {
+    pub fn buffer(&self, name: &str, size: u64, place: Place) -> Result<Buffer, RenderError> {
         Buffer::new(&self.device, name, size, place)
     }
 
@@ -249,12 +250,12 @@ impl Context {
         words: &[u32],
         constants: &[(u32, u32)],
         push_bytes: usize,
-    ) -> Result<Kernel, VulkanError> {
+    ) -> Result<Kernel, RenderError> {
         Kernel::new(&self.device, name, words, constants, push_bytes as u32)
     }
 
     /// Records, submits and waits. `what` is what errors say was being done.
-    pub fn submit<'r>(&'r mut self, what: &str, record: impl FnOnce(&Recorder<'r>)) -> Result<Submission, VulkanError> {
+    pub fn submit<'r>(&'r mut self, what: &str, record: impl FnOnce(&Recorder<'r>)) -> Result<Submission, RenderError> {
         self.submit_while(what, record, || ())
     }
 
@@ -264,9 +265,9 @@ impl Context {
         what: &str,
         record: impl FnOnce(&Recorder<'r>),
         meanwhile: impl FnOnce(),
-    ) -> Result<Submission, VulkanError> {
+    ) -> Result<Submission, RenderError> {
         let raw = self.device.raw();
-        let failed = || VulkanError::call(what.to_owned());
+        let failed = || call_failed(what.to_owned());
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         // SAFETY: the last submission was waited for, so pool, fence and queries are idle.
         unsafe {
@@ -305,9 +306,10 @@ impl Context {
                 }
             }
             if let Err(error) = ended {
-                self.device.stuck.store(error == vk::Result::TIMEOUT, Ordering::Relaxed);
+                // Whatever went wrong, the device may still be at work.
+                self.device.stuck.store(true, Ordering::Relaxed);
                 return Err(match error {
-                    vk::Result::TIMEOUT => VulkanError::Device(format!(
+                    vk::Result::TIMEOUT => RenderError::Lost(format!(
                         "the device was lost: {what} did not end within {} s",
                         TIMEOUT.as_secs()
                     )),
@@ -319,21 +321,21 @@ impl Context {
         Ok(Submission { wall: start.elapsed(), times: self.times(used)? })
     }
 
-    fn times(&self, used: u32) -> Result<Vec<f64>, VulkanError> {
+    fn times(&self, used: u32) -> Result<Vec<f64>, RenderError> {
         let Some(queries) = self.queries.filter(|_| used > 0) else {
             return Ok(Vec::new());
         };
         let mut ticks = vec![0u64; used as usize];
         // SAFETY: these queries were written by the submission that was just waited for.
         unsafe { self.device.raw().get_query_pool_results(queries, 0, &mut ticks, vk::QueryResultFlags::TYPE_64) }
-            .map_err(VulkanError::call("cannot read the device's clock"))?;
+            .map_err(call_failed("cannot read the device's clock"))?;
         let limits = self.info().limits;
         let mask = u64::MAX >> (64 - limits.timestamp_bits.clamp(1, 64));
         let seconds = |tick: &u64| (tick.wrapping_sub(ticks[0]) & mask) as f64 * limits.timestamp_ns * 1e-9;
         Ok(ticks.iter().map(seconds).collect())
     }
 
-    fn staging(&mut self, place: Place) -> Result<[Buffer; 2], VulkanError> {
+    fn staging(&mut self, place: Place) -> Result<[Buffer; 2], RenderError> {
         let (slot, name) = match place {
             Place::Upload => (&mut self.upload, "upload buffer"),
             _ => (&mut self.readback, "readback buffer"),
@@ -346,7 +348,7 @@ impl Context {
     }
 
     /// Writes `bytes` (whole 4-byte words) to a device buffer.
-    pub fn upload(&mut self, to: &Buffer, offset: u64, bytes: &[u8]) -> Result<(), VulkanError> {
+    pub fn upload(&mut self, to: &Buffer, offset: u64, bytes: &[u8]) -> Result<(), RenderError> {
         let staging = self.staging(Place::Upload)?;
         let mut parts = bytes.chunks(STAGING as usize).zip(staging.iter().cycle()).peekable();
         let fill = |next: Option<&(&[u8], &Buffer)>| next.into_iter().for_each(|(part, buffer)| buffer.write(part));
@@ -362,14 +364,14 @@ impl Context {
     }
 
     /// Reads `count` records from byte `offset` of a device buffer on.
-    pub fn download<T: Pod>(&mut self, from: &Buffer, offset: u64, count: usize) -> Result<Vec<T>, VulkanError> {
+    pub fn download<T: Pod>(&mut self, from: &Buffer, offset: u64, count: usize) -> Result<Vec<T>, RenderError> {
         let mut data = bytemuck::zeroed_vec::<T>(count);
         self.download_into(from, offset, &mut data)?;
         Ok(data)
     }
 
     /// Reads as many records as `data` holds from byte `offset` of a device buffer on.
-    pub fn download_into<T: Pod>(&mut self, from: &Buffer, offset: u64, data: &mut [T]) -> Result<(), VulkanError> {
+    pub fn download_into<T: Pod>(&mut self, from: &Buffer, offset: u64, data: &mut [T]) -> Result<(), RenderError> {
         let staging = self.staging(Place::Readback)?;
         let empty = |full: Option<(&mut [u8], &Buffer)>| full.into_iter().for_each(|(part, buffer)| buffer.read(part));
         let mut full = None;
@@ -395,10 +397,10 @@ impl Context {
         buffers: &[BufferSpec],
         push_constants: &[u8],
         groups: u32,
-    ) -> Result<Vec<Vec<u8>>, VulkanError> {
+    ) -> Result<Vec<Vec<u8>>, RenderError> {
         let limit = self.info().limits.group_count;
         if groups > limit {
-            return Err(VulkanError::Device(format!("{groups} workgroups of {name}; the device allows {limit}")));
+            return Err(RenderError::TooLarge(format!("{groups} workgroups of {name}; the device allows {limit}")));
         }
         let key = (words.to_vec(), push_constants.len());
         let kernel = match self.kernels.get(&key) {

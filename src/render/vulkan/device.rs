@@ -1,7 +1,7 @@
 //! Physical devices: what they are, what they lack, and which one is meant.
 
-use super::error::VulkanError;
 use super::instance::Instance;
+use crate::render::RenderError;
 use crate::shaders::FloatControls;
 use ash::vk;
 use serde::Serialize;
@@ -334,7 +334,7 @@ impl FromStr for DeviceChoice {
 
 impl DeviceChoice {
     /// Picks from the driver's list; the error says what there is, or what the device lacks.
-    pub fn pick<'a>(&self, devices: &'a [DeviceInfo]) -> Result<&'a DeviceInfo, VulkanError> {
+    pub fn pick<'a>(&self, devices: &'a [DeviceInfo]) -> Result<&'a DeviceInfo, RenderError> {
         let matches = |device: &&DeviceInfo| match self {
             DeviceChoice::Auto => true,
             DeviceChoice::Index(index) => device.index == *index,
@@ -347,7 +347,7 @@ impl DeviceChoice {
             return Ok(device);
         }
         if let Some(device) = fitting.first() {
-            return Err(VulkanError::NoDevice(format!(
+            return Err(RenderError::NoDevice(format!(
                 "Vulkan device {} ({}) cannot be used: {}",
                 device.index,
                 device.name,
@@ -356,7 +356,7 @@ impl DeviceChoice {
         }
         let there: Vec<_> = devices.iter().map(|device| format!("{} ({})", device.index, device.name)).collect();
         let there = if there.is_empty() { "none".to_owned() } else { there.join(", ") };
-        Err(VulkanError::NoDevice(match self {
+        Err(RenderError::NoDevice(match self {
             DeviceChoice::Auto => "no Vulkan device on this machine".to_owned(),
             DeviceChoice::Index(index) => format!("no Vulkan device {index}; there are: {there}"),
             DeviceChoice::Kind(kind) => {

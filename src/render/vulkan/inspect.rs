@@ -1,14 +1,14 @@
 //! One sample, step by step.
 
 use super::context::Context;
-use super::error::VulkanError;
 use super::queues::Queues;
 use crate::layout::{Batch, Hit, PathState};
 use crate::render::Bounce;
+use crate::render::RenderError;
 
 /// Every step of one sample, ordered by (depth, path id): the wavefront's own kernels run a batch of one slot, a round
 /// at a time, and chunk and hits are read back after each.
-pub fn run(context: &mut Context, queues: &Queues, x: u32, y: u32, sample: u32) -> Result<Vec<Bounce>, VulkanError> {
+pub fn run(context: &mut Context, queues: &Queues, x: u32, y: u32, sample: u32) -> Result<Vec<Bounce>, RenderError> {
     let batch = Batch {
         crop_x: x,
         crop_y: y,
@@ -38,7 +38,7 @@ pub fn run(context: &mut Context, queues: &Queues, x: u32, y: u32, sample: u32) 
         })?;
         let control = queues.read_control();
         if control.overflows != 0 {
-            return Err(VulkanError::Device(format!(
+            return Err(RenderError::Failed(format!(
                 "{} rays found a queue full: this is a bug of gonio",
                 control.overflows
             )));

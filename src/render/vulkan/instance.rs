@@ -1,8 +1,9 @@
 //! The Vulkan loader and instance.
 
 use super::device::{self, DeviceInfo};
-use super::error::VulkanError;
+use super::error::call_failed;
 use super::validation::{self, Messages};
+use crate::render::RenderError;
 use ash::{ext, khr, vk};
 use std::ffi::CStr;
 use std::path::{Path, PathBuf};
@@ -22,13 +23,13 @@ impl Instance {
     /// `validate` or by `GONIO_VALIDATION=1`.
     ///
     /// `GONIO_VULKAN_LOADER` names another loader library; tests use it to act out a machine without one.
-    pub fn new(validate: bool) -> Result<Arc<Instance>, VulkanError> {
+    pub fn new(validate: bool) -> Result<Arc<Instance>, RenderError> {
         let loader = std::env::var_os("GONIO_VULKAN_LOADER").map(PathBuf::from);
         Self::with_loader(loader.as_deref(), validate)
     }
 
     /// The same with the loader library at `loader`; `None` for the system's.
-    pub fn with_loader(loader: Option<&Path>, validate: bool) -> Result<Arc<Instance>, VulkanError> {
+    pub fn with_loader(loader: Option<&Path>, validate: bool) -> Result<Arc<Instance>, RenderError> {
         // SAFETY: the loader is a library made to be opened so; it is closed after everything that came from it.
         let entry = unsafe {
             match loader {
@@ -36,13 +37,13 @@ impl Instance {
                 None => ash::Entry::load(),
             }
         }
-        .map_err(|error| VulkanError::NoLoader(error.to_string()))?;
+        .map_err(|error| RenderError::NoDevice(format!("no Vulkan loader on this machine ({error})")))?;
 
         // SAFETY: `entry` is open.
         let version = unsafe { entry.try_enumerate_instance_version() };
         let version = version.ok().flatten().unwrap_or(vk::API_VERSION_1_0);
         if version < vk::API_VERSION_1_2 {
-            return Err(VulkanError::NoDevice(format!(
+            return Err(RenderError::NoDevice(format!(
                 "the Vulkan loader knows version {} only; 1.2 is needed",
                 device::version_text(version)
             )));
@@ -50,7 +51,7 @@ impl Instance {
         Self::create(entry, validate || validation::wanted())
     }
 
-    fn create(entry: ash::Entry, validate: bool) -> Result<Arc<Instance>, VulkanError> {
+    fn create(entry: ash::Entry, validate: bool) -> Result<Arc<Instance>, RenderError> {
         let listening = validate && has_layer(&entry);
         if validate && !listening {
             log::warn!("validation is wanted, but the Khronos validation layer is not installed");
@@ -85,28 +86,28 @@ impl Instance {
         }
         // SAFETY: every pointer in `info` lives until the end of this function.
         let raw = unsafe { entry.create_instance(&info, None) }
-            .map_err(|error| VulkanError::NoDevice(format!("no Vulkan driver can be used: {error}")))?;
+            .map_err(|error| RenderError::NoDevice(format!("no Vulkan driver can be used: {error}")))?;
         let mut instance = Instance { raw, messenger: None, messages, _entry: entry };
         if listening {
             let functions = ext::debug_utils::Instance::new(&instance._entry, &instance.raw);
             let info = validation::messenger_info(&instance.messages);
             // SAFETY: the extension is enabled, and `messages` is kept until the messenger is destroyed.
             let messenger = unsafe { functions.create_debug_utils_messenger(&info, None) }
-                .map_err(VulkanError::call("cannot listen to the validation layer"))?;
+                .map_err(call_failed("cannot listen to the validation layer"))?;
             instance.messenger = Some((functions, messenger));
         }
         Ok(Arc::new(instance))
     }
 
     /// All physical devices in the driver's order, usable or not.
-    pub fn devices(&self) -> Result<Vec<DeviceInfo>, VulkanError> {
+    pub fn devices(&self) -> Result<Vec<DeviceInfo>, RenderError> {
         Ok(self.physical_devices()?.into_iter().enumerate().map(|(at, raw)| device::describe(self, at, raw)).collect())
     }
 
-    pub(super) fn physical_devices(&self) -> Result<Vec<vk::PhysicalDevice>, VulkanError> {
+    pub(super) fn physical_devices(&self) -> Result<Vec<vk::PhysicalDevice>, RenderError> {
         // SAFETY: the instance is alive.
         unsafe { self.raw.enumerate_physical_devices() }
-            .map_err(|error| VulkanError::NoDevice(format!("cannot list the Vulkan devices: {error}")))
+            .map_err(|error| RenderError::NoDevice(format!("cannot list the Vulkan devices: {error}")))
     }
 
     /// True if a validation layer is at work.

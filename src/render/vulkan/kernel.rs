@@ -1,9 +1,10 @@
 //! A kernel: SPIR-V made into a pipeline, and the same bound to buffers.
 
 use super::context::Device;
-use super::error::VulkanError;
+use super::error::call_failed;
 use super::memory::Buffer;
 use super::reflect::{self, Binding, BindingKind};
+use crate::render::RenderError;
 use crate::shaders;
 use ash::vk;
 use std::sync::Arc;
@@ -36,8 +37,8 @@ impl Kernel {
         words: &[u32],
         constants: &[(u32, u32)],
         push_bytes: u32,
-    ) -> Result<Kernel, VulkanError> {
-        let invalid = |error| VulkanError::Device(format!("kernel {name}: {error}"));
+    ) -> Result<Kernel, RenderError> {
+        let invalid = |error| RenderError::Failed(format!("kernel {name}: {error}"));
         let words = &shaders::specialise(words, constants).map_err(invalid)?;
         let bindings = reflect::bindings(words).map_err(invalid)?;
         check_limits(device, name, &bindings)?;
@@ -79,7 +80,7 @@ impl Kernel {
 }
 
 /// One message per limit instead of a driver's crash.
-fn check_limits(device: &Device, name: &str, bindings: &[Binding]) -> Result<(), VulkanError> {
+fn check_limits(device: &Device, name: &str, bindings: &[Binding]) -> Result<(), RenderError> {
     let limits = device.info().limits;
     let count = |kind| -> u32 { bindings.iter().filter(|b| b.kind == kind).map(|b| b.count).sum() };
     let (storage, texel) = (count(BindingKind::StorageBuffer), count(BindingKind::TexelBuffer));
@@ -89,16 +90,16 @@ fn check_limits(device: &Device, name: &str, bindings: &[Binding]) -> Result<(),
         ("bindings", storage + texel + count(BindingKind::UniformBuffer), limits.stage_resources),
     ] {
         if needed > limit {
-            return Err(VulkanError::Device(format!("kernel {name} binds {needed} {what}; the device allows {limit}")));
+            return Err(RenderError::Failed(format!("kernel {name} binds {needed} {what}; the device allows {limit}")));
         }
     }
     Ok(())
 }
 
 impl Inner {
-    fn make_layouts(&mut self) -> Result<(), VulkanError> {
+    fn make_layouts(&mut self) -> Result<(), RenderError> {
         let raw = self.device.raw();
-        let failed = || VulkanError::call(format!("cannot lay out kernel {}", self.name));
+        let failed = || call_failed(format!("cannot lay out kernel {}", self.name));
         let sets = self.bindings.last().map_or(0, |binding| binding.set + 1);
         for set in 0..sets {
             let bindings: Vec<_> = self
@@ -128,9 +129,9 @@ impl Inner {
         Ok(())
     }
 
-    fn make_pipeline(&mut self, words: &[u32]) -> Result<(), VulkanError> {
+    fn make_pipeline(&mut self, words: &[u32]) -> Result<(), RenderError> {
         let raw = self.device.raw();
-        let failed = || VulkanError::call(format!("cannot compile kernel {}", self.name));
+        let failed = || call_failed(format!("cannot compile kernel {}", self.name));
         let info = vk::ShaderModuleCreateInfo::default().code(words);
         // SAFETY: our build made `words` (or a test did, through the same compiler) and `reflect` parsed them.
         let module = unsafe { raw.create_shader_module(&info, None) }.map_err(failed())?;
@@ -189,7 +190,7 @@ pub struct Bound {
 impl Bound {
     /// Asks `find(set, binding)` for each binding of the kernel; a list shorter than a descriptor array is filled up
     /// with its first buffer.
-    pub fn new(kernel: &Kernel, mut find: impl FnMut(u32, u32) -> Vec<Buffer>) -> Result<Bound, VulkanError> {
+    pub fn new(kernel: &Kernel, mut find: impl FnMut(u32, u32) -> Vec<Buffer>) -> Result<Bound, RenderError> {
         let mut bound =
             Bound { kernel: kernel.clone(), pool: vk::DescriptorPool::null(), sets: Vec::new(), _buffers: Vec::new() };
         if !kernel.bindings().is_empty() {
@@ -203,9 +204,9 @@ impl Bound {
         Ok(bound)
     }
 
-    fn allocate(&mut self) -> Result<(), VulkanError> {
+    fn allocate(&mut self) -> Result<(), RenderError> {
         let inner = &self.kernel.0;
-        let failed = || VulkanError::call(format!("cannot bind kernel {}", inner.name));
+        let failed = || call_failed(format!("cannot bind kernel {}", inner.name));
         let mut used: Vec<u32> = inner.bindings.iter().map(|binding| binding.set).collect();
         used.dedup();
         let sizes: Vec<_> = inner
@@ -225,11 +226,11 @@ impl Bound {
         Ok(())
     }
 
-    fn write(&mut self, binding: Binding, buffers: &[Buffer]) -> Result<(), VulkanError> {
+    fn write(&mut self, binding: Binding, buffers: &[Buffer]) -> Result<(), RenderError> {
         let device = &self.kernel.0.device;
         let place = format!("set {} binding {} of kernel {}", binding.set, binding.binding, self.kernel.name());
         if buffers.is_empty() || buffers.len() > binding.count as usize {
-            return Err(VulkanError::Device(format!("{} buffers for {place}", buffers.len())));
+            return Err(RenderError::Failed(format!("{} buffers for {place}", buffers.len())));
         }
         let all: Vec<_> = (0..binding.count as usize).map(|at| buffers.get(at).unwrap_or(&buffers[0])).collect();
         debug_assert!(all.iter().all(|buffer| buffer.is_of(device)), "{place}: a buffer of another device");
@@ -246,7 +247,7 @@ impl Bound {
                     _ => ("storage", limits.storage_range),
                 };
                 if let Some(buffer) = all.iter().find(|buffer| buffer.size() > limit) {
-                    return Err(VulkanError::Device(format!(
+                    return Err(RenderError::Failed(format!(
                         "{} has {} bytes; a {what} buffer of this device holds {limit}",
                         buffer.name(),
                         buffer.size()

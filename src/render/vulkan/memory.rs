@@ -1,10 +1,11 @@
 //! Buffers: every byte on the device comes from here.
 
 use super::context::Device;
-use super::error::VulkanError;
+use super::error::call_failed;
+use crate::render::RenderError;
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use gpu_allocator::{AllocationError, MemoryLocation};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Where a buffer lies.
@@ -34,14 +35,12 @@ struct Inner {
 impl Buffer {
     /// A buffer of `size` bytes (rounded up to whole 16-byte words, at least one); its contents are undefined.
     /// `name` is what errors call it.
-    pub(super) fn new(device: &Arc<Device>, name: &str, size: u64, place: Place) -> Result<Buffer, VulkanError> {
+    pub(super) fn new(device: &Arc<Device>, name: &str, size: u64, place: Place) -> Result<Buffer, RenderError> {
         let size = size.max(1).next_multiple_of(16);
-        let failed = |why: String| VulkanError::Device(format!("cannot allocate {name} ({size} bytes): {why}"));
+        let told = |why: &dyn std::fmt::Display| format!("cannot allocate {name} ({size} bytes): {why}");
         if size > device.info().limits.allocation {
-            return Err(failed(format!(
-                "the device allocates at most {} bytes at once",
-                device.info().limits.allocation
-            )));
+            let limit = device.info().limits.allocation;
+            return Err(RenderError::TooLarge(told(&format!("the device allocates at most {limit} bytes at once"))));
         }
         let (location, usage) = match place {
             Place::Device => (
@@ -58,7 +57,8 @@ impl Buffer {
         };
         let info = vk::BufferCreateInfo::default().size(size).usage(usage);
         // SAFETY: the device is alive, as `Inner` holds it.
-        let raw = unsafe { device.raw().create_buffer(&info, None) }.map_err(|error| failed(error.to_string()))?;
+        let raw = unsafe { device.raw().create_buffer(&info, None) }
+            .map_err(|error| call_failed(told(&"the driver refused"))(error))?;
         let inner = Inner {
             raw,
             size,
@@ -78,11 +78,14 @@ impl Buffer {
                 linear: true,
                 allocation_scheme: AllocationScheme::GpuAllocatorManaged,
             })
-            .map_err(|error| failed(error.to_string()))?;
+            .map_err(|error| match error {
+                AllocationError::OutOfMemory => RenderError::OutOfMemory(told(&error)),
+                _ => RenderError::Failed(told(&error)),
+            })?;
         // SAFETY: a fresh buffer bound once, to memory that was allocated for it and is freed after it.
         let bound = unsafe { device.raw().bind_buffer_memory(raw, allocation.memory(), allocation.offset()) };
         *inner.allocation.lock().unwrap_or_else(PoisonError::into_inner) = Some(allocation);
-        bound.map_err(|error| failed(error.to_string()))?;
+        bound.map_err(|error| call_failed(told(&"the driver refused"))(error))?;
         Ok(Buffer(Arc::new(inner)))
     }
 
@@ -103,13 +106,13 @@ impl Buffer {
     }
 
     /// The whole buffer as 16-byte texels.
-    pub(super) fn view(&self) -> Result<vk::BufferView, VulkanError> {
+    pub(super) fn view(&self) -> Result<vk::BufferView, RenderError> {
         if let Some(view) = self.0.view.get() {
             return Ok(*view);
         }
         let limit = self.0.device.info().limits.texel_elements;
         if self.size() / 16 > limit {
-            return Err(VulkanError::Device(format!(
+            return Err(RenderError::TooLarge(format!(
                 "{} has {} words of 16 bytes; a texel buffer of this device holds {limit}",
                 self.name(),
                 self.size() / 16
@@ -121,7 +124,7 @@ impl Buffer {
             .range(vk::WHOLE_SIZE);
         // SAFETY: the buffer is alive, was made for texel views and is within the limit.
         let view = unsafe { self.0.device.raw().create_buffer_view(&info, None) }
-            .map_err(VulkanError::call(format!("cannot view {} as texels", self.name())))?;
+            .map_err(call_failed(format!("cannot view {} as texels", self.name())))?;
         if self.0.view.set(view).is_err() {
             // SAFETY: another thread was faster; this view is known to nobody.
             unsafe { self.0.device.raw().destroy_buffer_view(view, None) };

@@ -27,7 +27,6 @@ pub use device::{
     DeviceChoice, DeviceInfo, DeviceKind, Limits, STORAGE_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_STORAGE_BUFFERS,
     TEXEL_FETCH_TEXEL_BUFFERS, float_control_names,
 };
-pub use error::VulkanError;
 pub use instance::Instance;
 pub use kernel::{Bound, Kernel, WORKGROUP};
 pub use memory::{Buffer, Place};

@@ -1,11 +1,11 @@
 //! Sizes of the wavefront's queues, and how a job is cut into batches.
 
 use super::device::{DeviceInfo, DeviceKind};
-use super::error::VulkanError;
 use crate::film::Rect;
 use crate::layout::{
     AovPixel, Batch, FilmSum, Hit, MAX_SHADE_GROUPS, PathState, SHADOWS_FILTERED, SceneHeader, ShadowRay,
 };
+use crate::render::RenderError;
 use crate::shaders::Fetch;
 use std::ops::Range;
 
@@ -44,7 +44,7 @@ impl QueuePlan {
         header: &SceneHeader,
         most: u64,
         chunk: Option<u32>,
-    ) -> Result<QueuePlan, VulkanError> {
+    ) -> Result<QueuePlan, RenderError> {
         let target = if info.kind == DeviceKind::Cpu { BATCH_CPU } else { BATCH_GPU };
         let most = most.min(u64::from(chunk.unwrap_or(u32::MAX)) * 4);
         let mut batch = u64::from(target).min(most.next_power_of_two()) as u32;
@@ -53,7 +53,7 @@ impl QueuePlan {
             match plan.too_large(info, fetch) {
                 None => return Ok(plan),
                 Some(_) if batch > 64 => batch /= 2,
-                Some(reason) => return Err(VulkanError::Device(reason)),
+                Some(reason) => return Err(RenderError::TooLarge(reason)),
             }
         }
     }

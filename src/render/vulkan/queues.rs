@@ -1,7 +1,6 @@
 //! The wavefront on the device: kernels, queues, and the commands of a batch.
 
 use super::context::Context;
-use super::error::VulkanError;
 use super::kernel::{Bound, Kernel, WORKGROUP};
 use super::memory::{Buffer, Place};
 use super::plan::QueuePlan;
@@ -12,6 +11,7 @@ use crate::layout::{
     Batch, Control, DispatchArguments, EMITTER_TEXTURED, FilmSum, INSTANCE_FLAT, INSTANCE_GOURAUD, INVALID,
     KIND_SPHERE, Light, MAX_SHADE_GROUPS, MODEL_BLEND, T_INFINITE,
 };
+use crate::render::RenderError;
 use crate::shaders::{self, Fetch};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -69,7 +69,7 @@ fn scene_constants(data: &SceneData) -> [(u32, u32); 24] {
         |light: &Light| light.flaps_min.max_element() <= -T_INFINITE && light.flaps_max.min_element() >= T_INFINITE;
     let flaps = !data.lights.iter().all(open);
     [
-        (5, data.stack_depth.max(1)),
+        (5, data.shapes.stack_depth.max(1)),
         (MODELS_PRESENT, models(data)),
         (7, data.header.integrator),
         (8, data.header.sampling),
@@ -111,10 +111,10 @@ impl Kernels {
         fetch: Fetch,
         constants: &[(u32, u32)],
         grouped: bool,
-    ) -> Result<Kernels, VulkanError> {
+    ) -> Result<Kernels, RenderError> {
         let make = |name: &str, own: &[(u32, u32)]| {
             let words = shaders::kernel(name, fetch)
-                .ok_or_else(|| VulkanError::Device(format!("this program was built without the kernel {name}")))?;
+                .ok_or_else(|| RenderError::Failed(format!("this program was built without the kernel {name}")))?;
             let all = constants.iter().filter(|(id, _)| own.iter().all(|(other, _)| id != other)).chain(own);
             context.kernel(name, words, &all.copied().collect::<Vec<_>>(), size_of::<Batch>())
         };
@@ -163,7 +163,7 @@ impl Queues {
         plan: QueuePlan,
         film: Buffer,
         aovs: Buffer,
-    ) -> Result<Queues, VulkanError> {
+    ) -> Result<Queues, RenderError> {
         let [levels, chunk, hits, order, shadows, slots] =
             plan.sizes().map(|(name, size)| context.buffer(name, size, Place::Device));
         let (levels, chunk, hits, order, shadows, slots) = (levels?, chunk?, hits?, order?, shadows?, slots?);

@@ -2,7 +2,6 @@
 
 use super::context::Context;
 use super::device::{DeviceChoice, DeviceKind};
-use super::error::VulkanError;
 use super::memory::Place;
 use super::pace::{self, Pace, Work};
 use super::plan::{self, QueuePlan};
@@ -10,12 +9,12 @@ use super::queues::{Kernels, Queues, specialisation};
 use super::scene::{FetchChoice, SceneBuffers};
 use super::validation::Messages;
 use crate::bake::SceneData;
-use crate::film::{Film, Rect};
+use crate::film::Rect;
 use crate::layout::{AovPixel, Batch, Control, FilmSum, SceneHeader};
-use crate::render::{Bounce, Counters, Job, RenderError, Renderer, Watch};
+use crate::render::{Bounce, Counters, Job, Pass, RenderError, Renderer};
 use crate::shaders::Fetch;
+use crate::watch::Watch;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 
 /// `VulkanOptions::group_from` where shading takes long, and where it does not: compiling takes seconds, and saves a third of
 /// the time of shading.
@@ -53,8 +52,6 @@ pub struct VulkanRenderer {
     /// Made for the first job, and again for a larger one.
     queues: Option<Queues>,
     pace: Pace,
-    /// What the last job read back: memory for the next one, since pages that were never touched take as long as the copy.
-    read_back: (Vec<FilmSum>, Vec<AovPixel>),
 }
 
 /// What a job counted, and the control record it was last read from.
@@ -71,10 +68,10 @@ impl Tally {
     }
 
     /// Reads the record after a submission; the result is its rounds, up to the one that was done.
-    fn read(&mut self, queues: &Queues) -> Result<u32, VulkanError> {
+    fn read(&mut self, queues: &Queues) -> Result<u32, RenderError> {
         let control = queues.read_control();
         if control.overflows != 0 {
-            return Err(VulkanError::Device(format!(
+            return Err(RenderError::Failed(format!(
                 "{} rays found a queue full ({:?}): this is a bug of gonio",
                 control.overflows, queues.plan
             )));
@@ -113,7 +110,6 @@ impl VulkanRenderer {
             page_limit: options.page_limit,
             queues: None,
             pace: Pace::new(1),
-            read_back: Default::default(),
         })
     }
 
@@ -138,7 +134,7 @@ impl VulkanRenderer {
     }
 
     /// Queues for `slots` samples (or as many as fit) and a film of `pixels`.
-    pub(super) fn ready(&mut self, slots: u64, pixels: u64) -> Result<(), VulkanError> {
+    pub(super) fn ready(&mut self, slots: u64, pixels: u64) -> Result<(), RenderError> {
         let film_bytes = pixels * size_of::<FilmSum>() as u64;
         let aov_bytes = if self.header.aovs != 0 { pixels * size_of::<AovPixel>() as u64 } else { 0 };
         let plan = QueuePlan::new(self.context.info(), self.scene.fetch(), &self.header, slots, self.chunk)?;
@@ -170,7 +166,7 @@ impl VulkanRenderer {
         let mut finished: Option<Batch> = None;
         for batch in plan::batches(band, job.samples.clone(), queues.plan.batch) {
             run_batch(&mut self.context, queues, &mut self.pace, tally, batch, finished, watch)?;
-            (watch.advance)(batch.slot_count.into());
+            watch.advance(batch.slot_count.into());
             finished = Some(batch);
         }
         if let Some(batch) = finished {
@@ -184,7 +180,7 @@ impl VulkanRenderer {
     }
 
     /// A band's sums, and its auxiliary values if they are wanted.
-    fn read_band(&mut self, sums: &mut [FilmSum], aovs: &mut [AovPixel]) -> Result<(), VulkanError> {
+    fn read_band(&mut self, sums: &mut [FilmSum], aovs: &mut [AovPixel]) -> Result<(), RenderError> {
         let queues = self.queues.as_ref().expect("made ready by the caller");
         let (from, aovs_from) = (queues.film.clone(), queues.aovs.clone());
         self.context.download_into(&from, 0, sums)?;
@@ -205,7 +201,7 @@ fn run_batch(
 ) -> Result<(), RenderError> {
     let (mut recorded, mut worked) = (0, 0);
     loop {
-        if watch.abort.load(Ordering::Relaxed) {
+        if watch.is_cancelled() {
             return Err(RenderError::Aborted);
         }
         let (rounds, limit) = (pace.rounds(recorded), pace.chunk_limit());
@@ -255,7 +251,7 @@ impl Renderer for VulkanRenderer {
         self.context.info().to_string()
     }
 
-    fn accumulate(&mut self, job: &Job, film: &mut Film, watch: &Watch) -> Result<Counters, RenderError> {
+    fn render(&mut self, job: &Job, watch: &Watch, pass: &mut Pass) -> Result<(), RenderError> {
         let bands =
             plan::bands(self.context.info(), self.scene.fetch(), job.crop, self.header.aovs != 0, self.page_limit);
         let pixels = bands.iter().map(|band| band.area() as u64).max().unwrap_or(0);
@@ -272,7 +268,7 @@ impl Renderer for VulkanRenderer {
         self.context.upload(&buffer, 0, bytemuck::bytes_of(&control))?;
         let mut tally = Tally::new(control);
         // Bands are whole rows from the top: one after the other they are the crop.
-        let (mut sums, mut aovs) = std::mem::take(&mut self.read_back);
+        let Pass { sums, aovs, .. } = pass;
         sums.resize(job.crop.area(), FilmSum::default());
         aovs.resize(if self.header.aovs != 0 { sums.len() } else { 0 }, AovPixel::default());
         let mut at = 0;
@@ -282,16 +278,9 @@ impl Renderer for VulkanRenderer {
             at = place.end;
             self.read_band(&mut sums[place.clone()], aovs.get_mut(place).unwrap_or_default())?;
         }
-        // All or nothing: a job that fails leaves the film as it was.
-        film.add_sums(job.crop, &sums);
-        if !aovs.is_empty() {
-            film.add_aovs(job.crop, &aovs, job.samples.contains(&0));
-        }
-        self.read_back = (sums, aovs);
         log::debug!("{} rays in {} rounds", tally.counters.closest_rays, tally.last.rounds);
-        film.record(job.samples.clone(), tally.nan_count, tally.clamped_count);
-        film.count_limited(tally.counters.limited);
-        Ok(tally.counters)
+        (pass.nan_count, pass.clamped_count, pass.counters) = (tally.nan_count, tally.clamped_count, tally.counters);
+        Ok(())
     }
 
     fn inspect(&mut self, x: u32, y: u32, sample: u32) -> Result<Vec<Bounce>, RenderError> {

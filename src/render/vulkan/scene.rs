@@ -2,9 +2,9 @@
 
 use super::context::Context;
 use super::device::{DeviceInfo, DeviceKind};
-use super::error::VulkanError;
 use super::memory::{Buffer, Place};
 use crate::bake::SceneData;
+use crate::render::RenderError;
 use crate::shaders::Fetch;
 
 /// Pages a set may have (`shaders/kernels/bindings.glsl`).
@@ -58,9 +58,9 @@ fn heap_parts(data: &SceneData) -> [(u32, &[u8]); 11] {
     let header = &data.header;
     [
         (header.first_instance, bytemuck::cast_slice(&data.instances)),
-        (header.first_top_instance, bytemuck::cast_slice(&data.top_instances)),
-        (header.first_face, bytemuck::cast_slice(&data.faces)),
-        (header.first_vertex, bytemuck::cast_slice(&data.vertices)),
+        (header.first_top_instance, bytemuck::cast_slice(&data.shapes.top_instances)),
+        (header.first_face, bytemuck::cast_slice(&data.shapes.faces)),
+        (header.first_vertex, bytemuck::cast_slice(&data.shapes.vertices)),
         (header.first_material, bytemuck::cast_slice(&data.materials)),
         (header.first_light, bytemuck::cast_slice(&data.lights)),
         (header.first_texture, bytemuck::cast_slice(&data.textures)),
@@ -86,7 +86,7 @@ fn choose(
     choice: FetchChoice,
     words: [u64; 3],
     page_limit: Option<u64>,
-) -> Result<(Fetch, PagePlan), VulkanError> {
+) -> Result<(Fetch, PagePlan), RenderError> {
     let order: &[Fetch] = match choice {
         FetchChoice::Auto if info.kind == DeviceKind::Cpu => &[Fetch::Texel, Fetch::Storage],
         FetchChoice::Auto => &[Fetch::Storage, Fetch::Texel],
@@ -108,7 +108,7 @@ fn choose(
             Err(reason) => reasons.push(format!("{name} buffers: {reason}")),
         }
     }
-    Err(VulkanError::Device(format!("the scene does not fit: {}", reasons.join("; "))))
+    Err(RenderError::TooLarge(format!("the scene does not fit: {}", reasons.join("; "))))
 }
 
 /// The scene's buffers.
@@ -126,9 +126,9 @@ impl SceneBuffers {
         data: &SceneData,
         choice: FetchChoice,
         page_limit: Option<u64>,
-    ) -> Result<SceneBuffers, VulkanError> {
-        let nodes: &[u8] = bytemuck::cast_slice(&data.nodes);
-        let triangles: &[u8] = bytemuck::cast_slice(&data.triangles);
+    ) -> Result<SceneBuffers, RenderError> {
+        let nodes: &[u8] = bytemuck::cast_slice(&data.shapes.nodes);
+        let triangles: &[u8] = bytemuck::cast_slice(&data.shapes.triangles);
         let heap = heap_parts(data);
         let sets: [&[(u32, &[u8])]; 3] = [&[(0, nodes)], &[(0, triangles)], &heap];
         let end = |parts: &[(u32, &[u8])]| {
@@ -191,7 +191,7 @@ fn upload_part(
     page: u64,
     mut at: u64,
     mut bytes: &[u8],
-) -> Result<(), VulkanError> {
+) -> Result<(), RenderError> {
     while !bytes.is_empty() {
         let within = at % page;
         let (now, later) = bytes.split_at((page - within).min(bytes.len() as u64) as usize);

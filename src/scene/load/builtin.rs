@@ -181,6 +181,7 @@ fn teapots(scene: &mut Scene, triangles: u64) {
 
 fn look(scene: &mut Scene, eye: [f32; 3], target: [f32; 3], fov_y_degrees: f32) {
     let projection = Projection::Perspective { fov_y: fov_y_degrees.to_radians() };
+    scene.has_camera = true;
     scene.camera = Camera {
         eye: Vec3::from(eye),
         target: Vec3::from(target),

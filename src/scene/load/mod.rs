@@ -40,7 +40,7 @@ pub fn load_with(path: &Path, overrides: &[Override], defines: &[(String, String
     if extension(path) == "xml" {
         let mut scene = mitsuba::load(path, defines)?;
         toml::override_film(&mut scene, overrides)?;
-        if staging::lacks_camera(&scene) {
+        if !scene.has_camera {
             staging::stage(&mut scene);
         }
         toml::override_settings(&mut scene, overrides)?;

@@ -14,17 +14,6 @@ use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// Stands for "no camera given": `eye` and `target` of a real camera differ.
-const NO_CAMERA: Camera = Camera {
-    eye: Vec3::ZERO,
-    target: Vec3::ZERO,
-    up: Vec3::Y,
-    projection: Projection::Perspective { fov_y: FOV_Y },
-    lens: None,
-    shift: Vec2::ZERO,
-    mirrored: false,
-};
-
 /// 30 degrees: little perspective, as in a photograph of a product.
 const FOV_Y: f32 = std::f32::consts::FRAC_PI_6;
 /// 60 degrees, for rooms.
@@ -61,10 +50,13 @@ pub fn bare_scene(path: &Path) -> Scene {
             rr_depth: 5,
             clamp: None,
             hide_emitters: false,
+            transparent: false,
+            aovs: false,
             shadows: Shadows::Opaque,
             shading: Shading::Phong,
         },
-        camera: NO_CAMERA,
+        camera: camera(DVec3::Z, DVec3::ZERO, FOV_Y),
+        has_camera: false,
         background: Background::BLACK,
         ambient: Rgb::ZERO,
         materials: Vec::new(),
@@ -77,20 +69,16 @@ pub fn bare_scene(path: &Path) -> Scene {
     }
 }
 
-/// True if `scene` has no camera yet: that of `bare_scene`, whose eye is its target.
-pub fn lacks_camera(scene: &Scene) -> bool {
-    scene.camera.eye == scene.camera.target
-}
-
 /// Gives `scene` the camera, lights, ambient light, background and ground that it lacks. Cameras and lights of its own are
 /// kept; the ground comes only where both are missing.
 pub fn stage(scene: &mut Scene) {
     let bounds = Bounds::of(scene);
-    let (no_camera, no_lights) = (lacks_camera(scene), scene.lights.is_empty());
+    let (no_camera, no_lights) = (!scene.has_camera, scene.lights.is_empty());
     let kind = bounds.room(scene);
     let room = kind != Room::None;
     if no_camera {
         scene.camera = if room { room_camera(scene, &bounds, kind) } else { object_camera(&scene.film, &bounds) };
+        scene.has_camera = true;
     }
     if no_lights {
         match room {

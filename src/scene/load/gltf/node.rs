@@ -250,6 +250,7 @@ impl Loader<'_> {
         let eye = world.translation;
         // Far enough away that rounding does not bend the direction.
         let reach = eye.abs().max_element().max(1.0);
+        self.scene.has_camera = true;
         self.scene.camera = Camera {
             eye: eye.as_vec3(),
             target: (eye + forward / forward.length() * reach).as_vec3(),

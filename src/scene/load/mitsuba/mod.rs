@@ -20,7 +20,7 @@ mod texture;
 mod transform;
 mod upgrade;
 
-use super::staging::{bare_scene, lacks_camera};
+use super::staging::bare_scene;
 use crate::scene::{MaterialId, MeshId, Rgb, Scene, SceneError};
 use document::{Document, Node, hint};
 use object::CLASSES;
@@ -97,7 +97,7 @@ impl Loader<'_> {
         match self.document.tag(node) {
             "shape" => self.add_shape(node),
             "emitter" => self.add_emitter(node),
-            "sensor" if lacks_camera(&self.scene) => sensor::read_sensor(self.document, node, &mut self.scene),
+            "sensor" if !self.scene.has_camera => sensor::read_sensor(self.document, node, &mut self.scene),
             "sensor" => {
                 let location = self.document.location_of(node);
                 self.scene.warnings.push(format!("{location}: the first sensor is used, this one is not"));

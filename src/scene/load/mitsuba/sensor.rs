@@ -21,6 +21,7 @@ pub fn read_sensor(document: &Document, node: Node, scene: &mut Scene) -> Result
         read_sampler(&Object::open(document, child.node)?, &mut scene.settings)?;
     }
     scene.camera = read_camera(&object, &scene.film)?;
+    scene.has_camera = true;
     Ok(())
 }
 

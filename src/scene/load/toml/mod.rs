@@ -56,6 +56,7 @@ fn read_scene(document: &Document) -> Result<Scene, SceneError> {
     document.attempt(|| read_film(&root, &mut scene.film));
     let camera = root.attempt(|| root.required("camera", read_camera(&root, &scene.film, None)?));
     scene.camera = camera.unwrap_or(scene.camera);
+    scene.has_camera = true;
     scene.ambient = lights.ambient;
     let mut textures = texture::Textures::default();
     let background = document.attempt(|| read_background(&root, &mut textures));

@@ -5,18 +5,19 @@ mod device;
 #[path = "common/scenes.rs"]
 mod scenes;
 
-use gonio::bake::SceneData;
+use gonio::bake::{SceneData, bake};
 use gonio::film::{Film, Rect};
 use gonio::render::cpu::CpuRenderer;
-use gonio::render::team::{Member, Order, Share, render};
+use gonio::render::session::{Member, Session, Share};
 use gonio::render::vulkan::{VulkanOptions, VulkanRenderer};
-use gonio::render::{Bounce, Counters, Job, RenderError, Renderer, Watch};
+use gonio::render::{Bounce, Job, Pass, RenderError, Renderer};
 use gonio::scene::Scene;
+use gonio::watch::Watch;
 use scenes::{Take, assert_same};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 const TAKE: Take = Take { width: 24, height: 16, samples: 40, seed: 3 };
@@ -29,7 +30,7 @@ fn scene() -> (Scene, SceneData) {
 /// The CPU backend, with a flaw.
 struct Flawed<'a> {
     inner: CpuRenderer<'a>,
-    /// Sleeps before each range, and looks at `abort` meanwhile.
+    /// Sleeps before each range, and looks meanwhile whether to give up.
     slow: Duration,
     /// Waits until this is not 0, likewise.
     after: Option<&'a AtomicU32>,
@@ -43,21 +44,21 @@ impl Renderer for Flawed<'_> {
         format!("flawed {}", self.inner.name())
     }
 
-    fn accumulate(&mut self, job: &Job, film: &mut Film, watch: &Watch) -> Result<Counters, RenderError> {
+    fn render(&mut self, job: &Job, watch: &Watch, pass: &mut Pass) -> Result<(), RenderError> {
         let start = Instant::now();
         let waits = || self.after.is_some_and(|finished| finished.load(Ordering::Relaxed) == 0);
         while start.elapsed() < self.slow || waits() {
-            if watch.abort.load(Ordering::Relaxed) {
+            if watch.is_cancelled() {
                 return Err(RenderError::Aborted);
             }
             std::thread::sleep(Duration::from_millis(2));
         }
         self.ranges += 1;
         if self.fails_at == Some(self.ranges - 1) {
-            self.inner.accumulate(job, &mut film.clone(), watch)?;
-            return Err(RenderError::Device("the device is lost".to_owned()));
+            self.inner.render(job, watch, pass)?;
+            return Err(RenderError::Lost("the device is lost".to_owned()));
         }
-        self.inner.accumulate(job, film, watch)
+        self.inner.render(job, watch, pass)
     }
 
     fn inspect(&mut self, x: u32, y: u32, sample: u32) -> Result<Vec<Bounce>, RenderError> {
@@ -76,10 +77,10 @@ impl Renderer for Counted<'_> {
         self.inner.name()
     }
 
-    fn accumulate(&mut self, job: &Job, film: &mut Film, watch: &Watch) -> Result<Counters, RenderError> {
-        let counters = self.inner.accumulate(job, film, watch)?;
+    fn render(&mut self, job: &Job, watch: &Watch, pass: &mut Pass) -> Result<(), RenderError> {
+        self.inner.render(job, watch, pass)?;
         self.finished.fetch_add(1, Ordering::Relaxed);
-        Ok(counters)
+        Ok(())
     }
 
     fn inspect(&mut self, x: u32, y: u32, sample: u32) -> Result<Vec<Bounce>, RenderError> {
@@ -91,7 +92,7 @@ fn flawed(data: &SceneData, slow: Duration, fails_at: Option<u32>) -> Member<'_>
     let open = move || -> Result<Box<dyn Renderer + '_>, RenderError> {
         Ok(Box::new(Flawed { inner: CpuRenderer::new(data, Some(1))?, slow, after: None, fails_at, ranges: 0 }))
     };
-    Member { name: "flawed".to_owned(), open: Box::new(open) }
+    Member::new("flawed", Box::new(open))
 }
 
 fn sound(data: &SceneData) -> Member<'_> {
@@ -100,15 +101,13 @@ fn sound(data: &SceneData) -> Member<'_> {
 
 /// Renders with nobody watching; the progress must end at what the film holds.
 fn run(members: Vec<Member>, samples: Range<u32>, film: &mut Film) -> Result<Vec<Share>, RenderError> {
-    let progress = AtomicI64::new(0);
-    let advance = |done| {
-        progress.fetch_add(done, Ordering::Relaxed);
-    };
-    let order = Order { crop: film.crop(), samples, time: None, stop: &|| false, advance: &advance };
-    let shares = render(members, &order, film)?;
+    let session = Session::new(film.clone(), members);
+    let watch = Watch::default();
+    let shares = session.render(samples, &watch)?;
+    *film = session.into_film();
     let total: u64 = shares.iter().map(|share| share.samples).sum();
     assert_eq!(total, film.samples().total(), "the shares add up");
-    assert_eq!(progress.into_inner(), (film.crop().area() as u64 * total) as i64, "so does the progress");
+    assert_eq!(watch.done(), film.crop().area() as u64 * total, "so does the progress");
     Ok(shares)
 }
 
@@ -124,8 +123,9 @@ fn two_renderers_make_the_film_of_one() {
 
 #[test]
 fn the_device_and_the_cpu_together_make_the_film_of_one() {
-    let (scene, mut data) = scene();
-    data.header.aovs = 1;
+    let (mut scene, _) = scene();
+    scene.settings.aovs = true;
+    let data = bake(&scene).unwrap();
     if let Err(error) = VulkanRenderer::new(&data, VulkanOptions::default()) {
         return device::skip(&error.to_string(), device::is_required());
     }
@@ -137,14 +137,14 @@ fn the_device_and_the_cpu_together_make_the_film_of_one() {
             let options = VulkanOptions { chunk, validate: true, ..VulkanOptions::default() };
             Ok(Box::new(Counted { inner: VulkanRenderer::new(data, options)?, finished }))
         };
-        Member { name: "vulkan".to_owned(), open: Box::new(open) }
+        Member::new("vulkan", Box::new(open))
     };
     let slow = || -> Result<Box<dyn Renderer + '_>, RenderError> {
         let inner = CpuRenderer::new(&data, Some(1))?;
         let slow = Duration::from_millis(50);
         Ok(Box::new(Flawed { inner, slow, after: Some(&finished), fails_at: None, ranges: 0 }))
     };
-    let slow = Member { name: "slow".to_owned(), open: Box::new(slow) };
+    let slow = Member::new("slow", Box::new(slow));
     let mut film = scenes::film(&scene, &data);
     let shares = run(vec![vulkan(None), slow, vulkan(Some(64))], 0..TAKE.samples, &mut film).unwrap();
     let alone = scenes::render_cpu(&scene, &data);
@@ -162,9 +162,7 @@ fn a_crop_and_a_part_of_the_samples_are_those_of_one_renderer() {
     let mut film = Film::new(spec.clone());
     run(vec![sound(&data), sound(&data), sound(&data)], 7..31, &mut film).unwrap();
     let mut alone = Film::new(spec);
-    let watch = Watch { abort: &AtomicBool::new(false), advance: &|_| {} };
-    let job = Job { crop: alone.crop(), samples: 7..31 };
-    CpuRenderer::new(&data, None).unwrap().accumulate(&job, &mut alone, &watch).unwrap();
+    scenes::accumulate(&mut CpuRenderer::new(&data, None).unwrap(), &mut alone, 7..31);
     assert_same(&alone, &film, "a crop");
     assert_eq!(film.samples().as_slice(), std::slice::from_ref(&(7..31)));
 }
@@ -180,7 +178,7 @@ fn what_a_lost_device_has_not_finished_goes_to_the_others() {
         ];
         let shares = run(members, 0..TAKE.samples, &mut film).unwrap();
         assert_same(&scenes::render_cpu(&scene, &data), &film, "after a loss");
-        assert!(matches!(&shares[0].error, Some(RenderError::Device(text)) if text.contains("lost")), "{shares:?}");
+        assert!(matches!(&shares[0].error, Some(RenderError::Lost(text)) if text.contains("lost")), "{shares:?}");
         assert!(shares[1].error.is_none() && shares[1].samples > 0, "{shares:?}");
     }
 }
@@ -188,10 +186,7 @@ fn what_a_lost_device_has_not_finished_goes_to_the_others() {
 #[test]
 fn a_device_that_cannot_be_opened_leaves_the_picture_to_the_others() {
     let (scene, data) = scene();
-    let broken = Member {
-        name: "broken".to_owned(),
-        open: Box::new(|| Err(RenderError::Device("out of device memory".to_owned()))),
-    };
+    let broken = Member::new("broken", Box::new(|| Err(RenderError::OutOfMemory("out of device memory".to_owned()))));
     let mut film = scenes::film(&scene, &data);
     let shares = run(vec![broken, sound(&data)], 0..TAKE.samples, &mut film).unwrap();
     assert_same(&scenes::render_cpu(&scene, &data), &film, "without the broken one");
@@ -223,12 +218,12 @@ fn a_device_that_is_far_too_slow_does_not_make_the_picture_late() {
 #[test]
 fn being_stopped_leaves_whole_ranges_without_a_gap() {
     let (scene, data) = scene();
-    let mut film = scenes::film(&scene, &data);
     let asked = AtomicU32::new(0);
-    let stop = || asked.fetch_add(1, Ordering::Relaxed) > 12;
+    let ask = || asked.fetch_add(1, Ordering::Relaxed) > 12;
     let members = vec![flawed(&data, Duration::from_millis(2), None), flawed(&data, Duration::from_millis(7), None)];
-    let order = Order { crop: film.crop(), samples: 0..1 << 24, time: None, stop: &stop, advance: &|_| {} };
-    let shares = render(members, &order, &mut film).unwrap();
+    let session = Session::new(scenes::film(&scene, &data), members);
+    let shares = session.render(0..1 << 24, &Watch::default().asking(&ask)).unwrap();
+    let film = session.into_film();
     let end = film.samples().total() as u32;
     assert!(end > 1, "{shares:?}");
     assert_eq!(film.samples().as_slice(), std::slice::from_ref(&(0..end)));
@@ -239,10 +234,9 @@ fn being_stopped_leaves_whole_ranges_without_a_gap() {
 #[test]
 fn a_time_limit_of_nothing_still_gives_one_range_each_at_most() {
     let (scene, data) = scene();
-    let mut film = scenes::film(&scene, &data);
-    let order =
-        Order { crop: film.crop(), samples: 0..1 << 24, time: Some(Duration::ZERO), stop: &|| false, advance: &|_| {} };
-    render(vec![sound(&data), sound(&data)], &order, &mut film).unwrap();
+    let session = Session::new(scenes::film(&scene, &data), vec![sound(&data), sound(&data)]);
+    session.render(0..1 << 24, &Watch::default().limited(Duration::ZERO)).unwrap();
+    let film = session.into_film();
     assert!((1..=2).contains(&film.samples().total()), "{}", film.samples());
 }
 
@@ -255,9 +249,9 @@ fn ranges_grow_until_each_takes_its_time() {
         fn name(&self) -> String {
             self.0.name()
         }
-        fn accumulate(&mut self, job: &Job, film: &mut Film, watch: &Watch) -> Result<Counters, RenderError> {
+        fn render(&mut self, job: &Job, watch: &Watch, pass: &mut Pass) -> Result<(), RenderError> {
             self.1.lock().unwrap().push(job.samples.end - job.samples.start);
-            self.0.accumulate(job, film, watch)
+            self.0.render(job, watch, pass)
         }
         fn inspect(&mut self, x: u32, y: u32, sample: u32) -> Result<Vec<Bounce>, RenderError> {
             self.0.inspect(x, y, sample)
@@ -268,9 +262,75 @@ fn ranges_grow_until_each_takes_its_time() {
         Ok(Box::new(Noting(CpuRenderer::new(&data, Some(1))?, &lengths)))
     };
     let mut film = scenes::film(&scene, &data);
-    run(vec![Member { name: String::new(), open: Box::new(open) }], 0..TAKE.samples, &mut film).unwrap();
+    run(vec![Member::new("noting", Box::new(open))], 0..TAKE.samples, &mut film).unwrap();
     let lengths = lengths.into_inner().unwrap();
     assert_eq!(lengths[0], 1);
     assert!(lengths.windows(2).all(|pair| pair[1] <= 4 * pair[0]), "{lengths:?}");
     assert!(lengths.iter().any(|&length| length > 1), "{lengths:?}");
+}
+
+#[test]
+fn the_reserve_goes_on_from_the_film_of_those_that_have_failed() {
+    let (scene, data) = scene();
+    for fails_at in [0, 2] {
+        let member = flawed(&data, Duration::from_millis(1), Some(fails_at));
+        let session = Session::new(scenes::film(&scene, &data), vec![member]).with_reserve(Some(sound(&data)));
+        let watch = Watch::default();
+        let shares = session.render(0..TAKE.samples, &watch).unwrap();
+        assert!(matches!(&shares[..], [lost, last] if lost.error.is_some() && last.samples > 0), "{shares:?}");
+        assert_eq!(
+            shares[0].samples + shares[1].samples,
+            u64::from(TAKE.samples),
+            "nothing is rendered twice: {shares:?}"
+        );
+        assert_eq!(shares[0].ranges, fails_at, "{shares:?}");
+        assert_same(&scenes::render_cpu(&scene, &data), &session.into_film(), "with the reserve");
+    }
+    let lost = || flawed(&data, Duration::ZERO, Some(0));
+    let session = Session::new(scenes::film(&scene, &data), vec![lost()]).with_reserve(Some(lost()));
+    assert!(session.render(0..4, &Watch::default()).is_err(), "both have failed");
+}
+
+#[test]
+fn a_session_renders_only_what_its_film_lacks_and_begins_anew_on_the_same_devices() {
+    let (scene, data) = scene();
+    let session = Session::new(scenes::film(&scene, &data), vec![sound(&data)]);
+    session.render(10..20, &Watch::default()).unwrap();
+    let watch = Watch::default();
+    session.render(0..TAKE.samples, &watch).unwrap();
+    let whole = scenes::render_cpu(&scene, &data);
+    assert_eq!(watch.done(), (whole.crop().area() as u64) * u64::from(TAKE.samples - 10));
+    let first = session.restart(scenes::film(&scene, &data));
+    assert_same(&whole, &first, "in two calls");
+    session.render(0..TAKE.samples, &Watch::default()).unwrap();
+    assert_same(&whole, &session.into_film(), "once more");
+}
+
+#[test]
+fn a_snapshot_is_the_film_of_a_render_that_ended_there() {
+    let (scene, data) = scene();
+    let members = vec![flawed(&data, Duration::from_millis(3), None), flawed(&data, Duration::from_millis(4), None)];
+    let session = Session::new(scenes::film(&scene, &data), members);
+    let watch = Watch::default();
+    // Kept until the end, so that every change must have left them alone.
+    let snapshots = std::thread::scope(|scope| {
+        let rendering = scope.spawn(|| session.render(0..TAKE.samples, &watch).unwrap());
+        let mut snapshots = vec![session.snapshot()];
+        while !rendering.is_finished() {
+            let snapshot = session.snapshot();
+            if snapshots.last().is_some_and(|last| last.samples() != snapshot.samples()) {
+                snapshots.push(snapshot);
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        snapshots
+    });
+    assert!(snapshots.len() > 3, "{} snapshots prove little", snapshots.len());
+    for snapshot in snapshots {
+        let mut alone = scenes::film(&scene, &data);
+        for range in snapshot.samples().as_slice() {
+            scenes::accumulate(&mut CpuRenderer::new(&data, None).unwrap(), &mut alone, range.clone());
+        }
+        assert_same(&alone, &snapshot, &format!("samples {}", snapshot.samples()));
+    }
 }
