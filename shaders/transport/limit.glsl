@@ -7,20 +7,15 @@
 #include "shading/spectrum.glsl"
 #include "transport/mod.glsl"
 
-// Factor that keeps a contribution of light that has been scattered within the scene's limit; below 1 where that bites.
-float limit(uint depth, Spectrum value) {
-    float largest = spectrum_max(value);
-    if (!SCENE_HAS_CLAMP || depth == 0u || largest <= header.clamp) {
-        return 1.0;
-    }
-    return div(header.clamp, largest);
-}
-
 // Adds light that has been scattered `depth` times to the sample in `slot`, within the scene's limit; how often that bites is
 // counted. `coverage`: what it adds to alpha.
 void add_limited(uint slot, uint depth, Spectrum value, float coverage, uint dither) {
-    float factor = limit(depth, value);
-    if (SCENE_HAS_CLAMP && factor < 1.0) count_limited();
+    float largest = spectrum_max(value);
+    float factor = 1.0;
+    if (SCENE_HAS_CLAMP && depth != 0u && largest > header.clamp) {
+        factor = div(header.clamp, largest);
+        count_limited();
+    }
     Spectrum seen = value * factor;
     add_contribution(header.film_scale, slot, vec4(seen.x, seen.y, seen.z, coverage), dither);
 }

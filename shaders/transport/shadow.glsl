@@ -28,7 +28,8 @@ float way_weight(ShadowRay shadow, float t) {
 // order of distance, whatever the order in which rays are traced (row 22 without the lecture's assumption). A blend's material
 // is drawn anew for each pane and light.
 void filter_shadow(ShadowRay shadow, Hit hit) {
-    SampleKey key = sample_key(shadow.dither, shadow.layer, 0u);
+    // Every layer has a sequence of its own: indices of one sequence are strata of each other.
+    SampleKey key = sample_key(shadow.dither, 0u, shadow.layer);
     Surface surface = surface_at(shadow.ray, hit);
     Material material = material_at(shadow.ray.direction, hit, key, DIMENSION_LEAF, surface);
     ShadowRay beyond = shadow;

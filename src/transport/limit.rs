@@ -6,15 +6,6 @@ use crate::shading::math::div;
 use crate::shading::spectrum::{Spectrum, spectrum_max};
 use glam::Vec4;
 
-/// Factor that keeps a contribution of light that has been scattered within the scene's limit; below 1 where that bites.
-pub fn limit(scene: &SceneView, depth: u32, value: Spectrum) -> f32 {
-    let largest = spectrum_max(value);
-    if scene.header.clamp <= 0.0 || depth == 0 || largest <= scene.header.clamp {
-        return 1.0;
-    }
-    div(scene.header.clamp, largest)
-}
-
 /// Adds light that has been scattered `depth` times to the sample in `slot`, within the scene's limit; how often that bites is
 /// counted. `coverage`: what it adds to alpha.
 pub fn add_limited(
@@ -26,8 +17,10 @@ pub fn add_limited(
     dither: u32,
     queues: &mut Queues,
 ) {
-    let factor = limit(scene, depth, value);
-    if factor < 1.0 {
+    let largest = spectrum_max(value);
+    let mut factor = 1.0;
+    if scene.header.clamp > 0.0 && depth != 0 && largest > scene.header.clamp {
+        factor = div(scene.header.clamp, largest);
         count_limited(queues);
     }
     let seen = value * factor;

@@ -27,7 +27,8 @@ pub fn way_weight(scene: &SceneView, shadow: &ShadowRay, t: f32) -> f32 {
 /// order of distance, whatever the order in which rays are traced (row 22 without the lecture's assumption). A blend's material
 /// is drawn anew for each pane and light.
 pub fn filter_shadow(scene: &SceneView, shadow: &ShadowRay, hit: &Hit, queues: &mut Queues) {
-    let key = sample_key(scene.header, shadow.dither, shadow.layer, 0);
+    // Every layer has a sequence of its own: indices of one sequence are strata of each other.
+    let key = sample_key(scene.header, shadow.dither, 0, shadow.layer);
     let mut surface = surface_at(scene, &shadow.ray, hit);
     let material = material_at(scene, shadow.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
     let mut beyond = *shadow;
