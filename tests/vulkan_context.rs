@@ -228,7 +228,7 @@ fn the_validation_layer_is_heard() {
         return;
     };
     if !context.is_validated() {
-        assert!(!device::is_required(), "the validation layer is not installed");
+        assert!(!device::is_validation_required(), "GONIO_VALIDATION=1, but the validation layer is not installed");
         return println!("SKIPPED: the validation layer is not installed");
     }
     let messages = context.messages();

@@ -59,7 +59,16 @@ pub fn context() -> Option<Validated<Context>> {
 
 /// True if the environment asks for tests to fail where there is no device.
 pub fn is_required() -> bool {
-    std::env::var_os("GONIO_REQUIRE_DEVICE").is_some_and(|value| value == "1")
+    is_set("GONIO_REQUIRE_DEVICE")
+}
+
+/// True if the environment asks for the validation layers; tests listen to them anyway where they are installed.
+pub fn is_validation_required() -> bool {
+    is_set("GONIO_VALIDATION")
+}
+
+fn is_set(name: &str) -> bool {
+    std::env::var_os(name).is_some_and(|value| value == "1")
 }
 
 /// Says that a test is skipped; fails it if a device is required.
