@@ -56,7 +56,7 @@ fn members<'a>(flags: &BackendFlags, data: &'a SceneData) -> anyhow::Result<Vec<
     }
     let found = Instance::new(false).and_then(|instance| instance.devices());
     let names = match (text, &found) {
-        (ALL, Ok(devices)) => everything(devices, flags.backend),
+        (ALL, Ok(devices)) => all_of(devices, flags.backend),
         (ALL, Err(error)) if flags.backend == BackendName::Auto => {
             log::warn!("{error}: using the CPU backend alone");
             vec![CPU.to_owned()]
@@ -88,10 +88,25 @@ fn members<'a>(flags: &BackendFlags, data: &'a SceneData) -> anyhow::Result<Vec<
     Ok(members)
 }
 
-/// Names of all devices that can be used, and of the CPU backend.
-fn everything(devices: &[DeviceInfo], backend: BackendName) -> Vec<String> {
-    let usable = devices.iter().filter(|device| device.is_usable()).map(|device| device.index.to_string());
-    usable.chain((backend == BackendName::Auto).then(|| CPU.to_owned())).collect()
+/// Names of all devices worth using, and of the CPU backend. Says which are left out.
+fn all_of(devices: &[DeviceInfo], backend: BackendName) -> Vec<String> {
+    let usable: Vec<_> =
+        devices.iter().filter(|device| device.is_usable()).map(|device| (device.index, device.kind)).collect();
+    let names = everything(&usable, backend);
+    for (index, _) in usable.iter().filter(|(index, _)| !names.contains(&index.to_string())) {
+        let why = "a software device shares the processor with the CPU backend, and is used if it is named";
+        log::info!("device {index} is left out of \"all\": {why}");
+    }
+    names
+}
+
+/// Numbers of `devices` and the CPU backend, but no software device beside it: both would want the same processor.
+fn everything(devices: &[(usize, DeviceKind)], backend: BackendName) -> Vec<String> {
+    let with_cpu = backend == BackendName::Auto;
+    let has_card = devices.iter().any(|(_, kind)| *kind != DeviceKind::Cpu);
+    let worth = |kind: DeviceKind| kind != DeviceKind::Cpu || !(with_cpu || has_card);
+    let chosen = devices.iter().filter(|(_, kind)| worth(*kind)).map(|(index, _)| index.to_string());
+    chosen.chain(with_cpu.then(|| CPU.to_owned())).collect()
 }
 
 /// The one renderer that `flags` ask for: a Vulkan device proved exact or warned of, or the CPU backend, which is exact by
@@ -117,4 +132,23 @@ fn member(flags: BackendFlags, data: &SceneData) -> Member<'_> {
 fn cpu_member<'a>(flags: &BackendFlags, data: &'a SceneData) -> Member<'a> {
     let threads = flags.threads;
     Member::new("the CPU backend", Box::new(move || Ok(Box::new(CpuRenderer::new(data, threads)?) as _)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_is_every_card_and_the_cpu_backend_but_no_software_device_beside_it() {
+        use DeviceKind::{Cpu, Discrete, Integrated};
+        let (auto, vulkan) = (BackendName::Auto, BackendName::Vulkan);
+        let machine = [(0, Cpu), (1, Discrete), (2, Integrated)];
+        assert_eq!(everything(&machine, auto), ["1", "2", CPU]);
+        assert_eq!(everything(&machine, vulkan), ["1", "2"]);
+        assert_eq!(everything(&machine[..1], auto), [CPU]);
+        // Without the CPU backend nobody shares the processor with it.
+        assert_eq!(everything(&machine[..1], vulkan), ["0"]);
+        assert_eq!(everything(&[], auto), [CPU]);
+        assert_eq!(everything(&[], vulkan), [""; 0]);
+    }
 }

@@ -10,13 +10,13 @@ fn stats(folder: &Folder) -> serde_json::Value {
 }
 
 #[test]
-fn all_devices_together_make_the_file_of_the_cpu() {
+fn several_devices_together_make_the_file_of_the_cpu() {
     if !has_device() {
         return;
     }
     let folder = Folder::new();
     let cpu = folder.cpu(&["render", "scene.toml", "-o", "cpu.png", "--spp", "24"]);
-    for devices in ["all", "0,cpu", "cpu, 0"] {
+    for devices in ["0,cpu", "cpu, 0"] {
         let args =
             ["render", "scene.toml", "-o", "all.png", "--spp", "24", "--stats", "stats.json", "--device", devices];
         assert_eq!(folder.done(&args), cpu, "{devices}");
@@ -29,6 +29,29 @@ fn all_devices_together_make_the_file_of_the_cpu() {
         for share in shares {
             assert!(share["error"].is_null() && share["busy_s"].is_f64() && share["device"].is_string(), "{stats}");
         }
+    }
+}
+
+#[test]
+fn all_makes_the_same_file_and_takes_no_software_device_beside_the_cpu_backend() {
+    if !has_device() {
+        return;
+    }
+    let folder = Folder::new();
+    let cpu = folder.cpu(&["render", "scene.toml", "-o", "cpu.png"]);
+    let args = ["render", "scene.toml", "-o", "all.png", "--device", "all", "-v", "--stats", "stats.json"];
+    let ended = folder.run(&args);
+    assert_eq!((ended.code, ended.text()), (Some(0), cpu));
+    assert_eq!(folder.bytes("all.png"), folder.bytes("cpu.png"));
+    let list: serde_json::Value = serde_json::from_str(&folder.done(&["devices", "--json"])).expect("JSON");
+    let devices = list["vulkan"]["devices"].as_array().expect("a list");
+    let names = stats(&folder)["device"].as_str().expect("names").to_owned();
+    for device in devices {
+        let name = device["name"].as_str().expect("a name");
+        let is_software = device["kind"] == "cpu";
+        assert_eq!(names.contains(name), !is_software && device["missing"] == serde_json::json!([]), "{names}");
+        let told = format!("device {} is left out of \"all\"", device["index"]);
+        assert_eq!(ended.stderr.contains(&told), is_software, "{}", ended.stderr);
     }
 }
 
