@@ -4,6 +4,11 @@ use super::FilmError;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// An unfinished file that nobody holds and that is older than this was left behind. Between making a file and locking it
+/// there are microseconds, between its last byte and its name no more.
+const ABANDONED: Duration = Duration::from_secs(60);
 
 /// A file to be: opened before the work starts, so that a bad path fails at once; written under a temporary name in the
 /// same folder; given its name by `commit`, and removed if that is never reached. Whatever had the name before stays
@@ -155,20 +160,28 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Creates a hidden file of a new name beside `target`.
+/// Creates a hidden file of a new name beside `target`, and holds it by a lock, which goes with the process. Removes what
+/// was left behind there.
 fn create_temporary(target: &Path) -> io::Result<(File, Remove)> {
     let Some(name) = target.file_name() else {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "it has no file name"));
     };
     let folder = folder_of(target);
+    sweep(folder);
+    // Processes of one number follow each other, in containers always: the time tells their files apart.
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos());
     for attempt in 0..1000 {
         let mut hidden = std::ffi::OsString::from(".");
         // File names are at most 255 bytes on most systems: a long one is cut, the rest keeps it unique.
         hidden.push(name.to_string_lossy().chars().take(40).collect::<String>());
-        hidden.push(format!(".{}-{attempt}.part", std::process::id()));
+        hidden.push(format!(".{}-{}.part", std::process::id(), now + attempt));
         let path = folder.join(hidden);
         match OpenOptions::new().write(true).create_new(true).open(&path) {
-            Ok(file) => return Ok((file, Remove(Some(path)))),
+            Ok(file) => {
+                // Where there are no locks (some network file systems), there is no sweeping either.
+                let _ = file.try_lock();
+                return Ok((file, Remove(Some(path))));
+            }
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 return Err(io::Error::new(error.kind(), format!("no folder {}", folder.display())));
@@ -177,4 +190,34 @@ fn create_temporary(target: &Path) -> io::Result<(File, Remove)> {
         }
     }
     Err(io::Error::other("too many unfinished files beside it"))
+}
+
+/// Removes the unfinished files of processes that were killed. What cannot be looked at stays.
+fn sweep(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if is_unfinished(&entry.file_name().to_string_lossy()) && is_abandoned(&entry.path()) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Whether `create_temporary` gives such names.
+fn is_unfinished(name: &str) -> bool {
+    let tail =
+        name.strip_prefix('.').and_then(|name| name.strip_suffix(".part")).and_then(|name| name.rsplit_once('.'));
+    let numbers = tail.and_then(|(_, tail)| tail.split_once('-'));
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    numbers.is_some_and(|(process, time)| is_number(process) && is_number(time))
+}
+
+fn is_abandoned(path: &Path) -> bool {
+    let look = || -> io::Result<bool> {
+        let found = fs::symlink_metadata(path)?;
+        // A clock set back makes a file look new; it is swept later.
+        if !found.is_file() || found.modified()?.elapsed().unwrap_or_default() < ABANDONED {
+            return Ok(false);
+        }
+        Ok(File::open(path)?.try_lock().is_ok())
+    };
+    look().unwrap_or(false)
 }

@@ -81,6 +81,61 @@ fn two_runs_to_one_name_do_not_mix() {
     assert_eq!(names(folder.path()), ["a.png"]);
 }
 
+/// Makes a file that was last written ten minutes ago.
+fn old_file(path: &Path) -> fs::File {
+    let file = fs::File::create(path).unwrap();
+    file.set_modified(std::time::SystemTime::now() - std::time::Duration::from_secs(600)).unwrap();
+    file
+}
+
+#[test]
+fn what_killed_processes_left_is_swept_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    for dead in [".a.png.123-0.part", ".other name.exr.7-1764571132000000000.part"] {
+        drop(old_file(&at(dead)));
+    }
+    let kept = [".a.png.part", ".a.png.12-x.part", ".b.12-3.part.png", "a.png.12-3.part", "notes"];
+    for other in kept {
+        drop(old_file(&at(other)));
+    }
+    // Of a process that is at work, and one that was made a moment ago.
+    let held = old_file(&at(".a.png.124-0.part"));
+    held.lock().unwrap();
+    fs::write(at(".a.png.125-0.part"), "new").unwrap();
+    let mut file = OutputFile::open(&at("a.png")).unwrap();
+    file.write_all(b"all of it").unwrap();
+    file.commit().unwrap();
+    let mut expected: Vec<&str> = kept.to_vec();
+    expected.extend([".a.png.124-0.part", ".a.png.125-0.part", "a.png"]);
+    expected.sort_unstable();
+    assert_eq!(names(folder.path()), expected);
+}
+
+#[test]
+fn a_file_at_work_is_not_swept_however_long_it_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let (a, b) = (folder.path().join("a.png"), folder.path().join("b.png"));
+    let mut slow = OutputFile::open(&a).unwrap();
+    let unfinished = fs::OpenOptions::new().write(true).open(slow.temporary().unwrap()).unwrap();
+    unfinished.set_modified(std::time::SystemTime::now() - std::time::Duration::from_secs(86_400)).unwrap();
+    OutputFile::open(&b).unwrap().commit().unwrap();
+    slow.write_all(b"all of it").unwrap();
+    slow.commit().unwrap();
+    assert_eq!(names(folder.path()), ["a.png", "b.png"]);
+}
+
+#[test]
+fn a_thousand_unfinished_files_of_this_very_number_do_not_stop_the_next() {
+    let folder = tempfile::tempdir().unwrap();
+    for attempt in 0..1000 {
+        fs::write(folder.path().join(format!(".a.png.{}-{attempt}.part", std::process::id())), "").unwrap();
+    }
+    let path = folder.path().join("a.png");
+    OutputFile::open(&path).unwrap().commit().unwrap();
+    assert!(path.exists());
+}
+
 #[test]
 fn bad_paths_are_refused_before_the_work_starts() {
     let folder = tempfile::tempdir().unwrap();
