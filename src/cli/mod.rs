@@ -80,7 +80,10 @@ Examples:
 
 /// Parses the command line and runs the subcommand.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(told) => return said(&told),
+    };
     let level = match (cli.quiet, cli.verbose) {
         (true, _) => log::LevelFilter::Error,
         (_, 0) => log::LevelFilter::Warn,
@@ -113,15 +116,30 @@ pub fn main() -> ExitCode {
             written.context("cannot write standard output").map(|()| ExitCode::SUCCESS)
         }
     };
-    result.unwrap_or_else(|error| {
-        // A reader that has gone away (`gonio devices | head -1`) is no error worth a word.
-        if is_broken_pipe(&error) {
-            return ExitCode::SUCCESS;
-        }
-        // Of a scene file all that is wrong is told, each on its line.
-        message(&error).lines().for_each(|line| eprintln!("error: {line}"));
-        ExitCode::from(exit_code(&error))
-    })
+    // What is still in standard output's buffer would be lost without a word.
+    let flushed = |code| io::stdout().flush().context("cannot write standard output").map(|()| code);
+    result.and_then(flushed).unwrap_or_else(|error| failed(&error))
+}
+
+/// Prints what clap has to say: help, or what is wrong with the command line.
+fn said(told: &clap::Error) -> ExitCode {
+    match told.print().and_then(|()| io::stdout().flush()) {
+        _ if told.use_stderr() => ExitCode::from(EXIT_USAGE),
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => failed(&anyhow::Error::from(error).context("cannot write standard output")),
+    }
+}
+
+/// Prints an error; its exit code, also where nobody can be told.
+fn failed(error: &anyhow::Error) -> ExitCode {
+    // A reader that has gone away (`gonio devices | head -1`) is no error worth a word.
+    if is_broken_pipe(error) {
+        return ExitCode::SUCCESS;
+    }
+    // Of a scene file all that is wrong is told, each on its line. `eprintln!` would panic where standard error is full.
+    let told = message(error).lines().map(|line| format!("error: {line}\n")).collect::<String>();
+    let _ = io::stderr().write_all(told.as_bytes());
+    ExitCode::from(exit_code(error))
 }
 
 /// The error and its causes on one line, but for causes that it already tells.
@@ -133,8 +151,12 @@ fn message(error: &anyhow::Error) -> String {
     })
 }
 
+/// Whether text was printed for somebody who reads no more. Pictures and films are not text: half of one is none.
 fn is_broken_pipe(error: &anyhow::Error) -> bool {
-    error.chain().any(|cause| cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe))
+    !error.chain().any(|cause| cause.is::<crate::film::FilmError>())
+        && error
+            .chain()
+            .any(|cause| cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe))
 }
 
 /// A command line that parses but asks for what does not exist: exit code 2.

@@ -84,8 +84,7 @@ impl OutputFlags {
 /// Prints on stdout, unless that carries the picture.
 pub fn print_report(report: &str, piped: bool) -> Result<()> {
     if piped {
-        eprint!("{report}");
-        return Ok(());
+        return std::io::stderr().write_all(report.as_bytes()).context("cannot write standard error");
     }
     std::io::stdout().write_all(report.as_bytes()).context("cannot write standard output")
 }

@@ -4,7 +4,7 @@ use super::Usage;
 use super::fit::FitArgs;
 use super::growth::GrowthArgs;
 use super::setup::Size;
-use crate::film::OutputFile;
+use crate::film::{FilmError, OutputFile};
 use crate::plot::curves::{self, FACETS, Facets, Interface, InterfaceKind};
 use crate::plot::edge::edge_figure;
 use crate::plot::shelf::Shelf;
@@ -228,7 +228,7 @@ pub fn run(args: &PlotArgs) -> anyhow::Result<ExitCode> {
         return Err(Usage("this plot has no curves: .svg or .png".into()).into());
     }
     let file = render(&figure, format, size)?;
-    output.write_all(&file).with_context(|| format!("cannot write {}", path.display()))?;
+    output.write_all(&file).map_err(|error| FilmError::write(&path, error))?;
     let is_stdout = output.is_stdout();
     output.commit()?;
     // Standard output has room for one of them.

@@ -169,18 +169,11 @@ fn reader_that_goes_away_is_no_error() {
     for args in [
         &["devices"][..],
         &["completions", "zsh"],
+        &["--version"],
         &["render", "--help"],
-        &["render", "scene.toml", "--backend", "cpu", "-o", "-"],
         &["parity", "scene.toml", "--between", "cpu,cpu"],
     ] {
-        let mut child = Command::new(program());
-        child.args(args).current_dir(folder.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = child.spawn().expect("started");
-        drop(child.stdout.take());
-        let mut stderr = String::new();
-        child.stderr.take().expect("piped").read_to_string(&mut stderr).expect("text");
-        assert_eq!(child.wait().expect("ended").code(), Some(0), "{args:?}: {stderr}");
-        assert_eq!(stderr, "", "{args:?}");
+        assert_eq!(without_a_reader(&folder, args), (Some(0), String::new()), "{args:?}");
     }
     // As `head -1`: the first line is read, then the pipe is closed.
     let mut child = Command::new(program()).arg("devices").stdout(Stdio::piped()).spawn().expect("started");
@@ -188,6 +181,76 @@ fn reader_that_goes_away_is_no_error() {
     BufReader::new(child.stdout.take().expect("piped")).read_line(&mut first).expect("a line");
     assert!(first.starts_with("DEVICE "), "{first}");
     assert_eq!(child.wait().expect("ended").code(), Some(0));
+}
+
+/// Runs the program with standard output closed at the other end; its exit code and what it says.
+fn without_a_reader(folder: &Folder, args: &[&str]) -> (Option<i32>, String) {
+    let mut child = Command::new(program());
+    child.args(args).current_dir(folder.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = child.spawn().expect("started");
+    drop(child.stdout.take());
+    let mut stderr = String::new();
+    child.stderr.take().expect("piped").read_to_string(&mut stderr).expect("text");
+    (child.wait().expect("ended").code(), stderr)
+}
+
+#[test]
+fn picture_that_nobody_reads_to_its_end_is_an_error() {
+    let folder = Folder::new();
+    for args in [
+        &["render", "scene.toml", "--backend", "cpu", "-o", "-"][..],
+        &["render", "scene.toml", "--backend", "cpu", "-o", "-", "--format", "gfilm"],
+        &["plot", "fresnel", "-o", "-"],
+    ] {
+        let (code, stderr) = without_a_reader(&folder, args);
+        assert_eq!(code, Some(74), "{args:?}: {stderr}");
+        assert!(stderr.starts_with("error: cannot write standard output: Broken pipe"), "{args:?}: {stderr}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn full_standard_error_changes_no_exit_code_but_that_of_a_report_on_it() {
+    let folder = Folder::new();
+    folder.cpu(&["render", "scene.toml", "-o", "a.png"]);
+    let cases: &[(i32, &[&str])] = &[
+        (2, &["render", "scene.toml", "--bogus"]),
+        (65, &["render", "a.png"]),
+        (74, &["render", "absent.toml"]),
+        (69, &["render", "scene.toml", "--device", "nonsense", "-o", "b.png"]),
+        (0, &["render", "scene.toml", "-vv", "--backend", "cpu", "-o", "b.png"]),
+        (74, &["render", "scene.toml", "--backend", "cpu", "-o", "-"]),
+    ];
+    let closed = || {
+        let mut reader = Command::new("true").stdin(Stdio::piped()).spawn().expect("started");
+        let pipe = reader.stdin.take().expect("piped");
+        reader.wait().expect("ended");
+        Stdio::from(pipe)
+    };
+    let full = || Stdio::from(std::fs::OpenOptions::new().write(true).open("/dev/full").expect("/dev/full"));
+    for &(code, args) in cases {
+        let ended = |stderr: Stdio| {
+            let mut command = Command::new(program());
+            command.args(args).current_dir(folder.path("")).stdout(Stdio::piped()).stderr(stderr);
+            command.output().expect("started").status.code()
+        };
+        assert_eq!(ended(full()), Some(code), "{args:?}, full");
+        // A report that nobody reads is text like any other.
+        let code = if args.contains(&"-") { 0 } else { code };
+        assert_eq!(ended(closed()), Some(code), "{args:?}, closed");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn help_that_cannot_be_written_is_an_error() {
+    for args in [&["--help"][..], &["render", "--help"], &["--version"]] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("/dev/full");
+        let child = Command::new(program()).args(args).stdout(full).output().expect("started");
+        let stderr = String::from_utf8_lossy(&child.stderr);
+        assert_eq!(child.status.code(), Some(74), "{args:?}: {stderr}");
+        assert!(stderr.starts_with("error: cannot write standard output: No space left"), "{args:?}: {stderr}");
+    }
 }
 
 #[test]
