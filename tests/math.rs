@@ -312,6 +312,56 @@ fn exponents_and_scalings_are_exact() {
     assert_eq!(ldexp_(1.0, -500), f32::MIN_POSITIVE);
 }
 
+/// Every magnitude that is subnormal in some step of a formula, of both signs: from the least float to above `TINY`.
+fn dust() -> impl Iterator<Item = f32> {
+    floats(f32::from_bits(1), 2.0 * TINY, 65_521).flat_map(|x| [x, -x])
+}
+
+#[test]
+fn no_function_makes_a_subnormal_number_or_tells_one_from_zero() {
+    let ones: [(&str, fn(f32) -> f32); 14] = [
+        ("rcp", rcp),
+        ("rsqrt", rsqrt),
+        ("sqrt_", sqrt_),
+        ("sin_turns", sin_turns),
+        ("cos_turns", cos_turns),
+        ("sin_", sin_),
+        ("cos_", cos_),
+        ("exp2_", exp2_),
+        ("exp_", exp_),
+        ("log2_", log2_),
+        ("log_", log_),
+        ("acos_", acos_),
+        ("asin_", asin_),
+        ("length3", |x| length3(Vec3::new(x, 0.0, 0.0))),
+    ];
+    for (name, function) in ones {
+        for x in dust().chain(WILD) {
+            let result = function(x);
+            assert!(!result.is_subnormal(), "{name}({x:e}) is {result:e}");
+            assert!(!x.is_subnormal() || result == function(0.0), "{name}({x:e}) is {result:e}, not as for 0");
+        }
+    }
+    let twos: [(&str, fn(f32, f32) -> f32); 3] = [("div", div), ("pow_", pow_), ("atan2_", atan2_)];
+    for (name, function) in twos {
+        for x in dust().chain(WILD) {
+            for other in [1e-38, 1e-20, 0.3, 1.0, 7.0, 1e20, -2.0] {
+                for (result, flushed) in
+                    [(function(x, other), function(0.0, other)), (function(other, x), function(other, 0.0))]
+                {
+                    assert!(!result.is_subnormal(), "{name} of {x:e} and {other:e} is {result:e}");
+                    assert!(!x.is_subnormal() || result == flushed, "{name} of {x:e} and {other:e} is {result:e}");
+                }
+            }
+        }
+    }
+    for x in dust().chain(floats(1e-8, 1e8, 99_991)) {
+        for n in -160..0 {
+            assert!(!ldexp_(x, n).is_subnormal(), "{x:e} 2^{n} is {:e}", ldexp_(x, n));
+        }
+    }
+}
+
 #[test]
 fn choices_treat_nan_as_stated() {
     assert_eq!((min_(1.0, 2.0), max_(1.0, 2.0)), (1.0, 2.0));

@@ -6,7 +6,8 @@
 // proved by `tests/math.rs`.
 //
 // Devices may flush subnormal numbers to zero, also those inside a formula. Division and roots therefore work on
-// magnitudes from `TINY` to `HUGE` only, where none occurs.
+// magnitudes from `TINY` to `HUGE` only, where none occurs; sines take what is smaller than `TINY` for zero, and no
+// function of this file makes a subnormal but sums, products and choices, which give what they are given.
 #ifndef SHADING_MATH_GLSL
 #define SHADING_MATH_GLSL
 
@@ -111,16 +112,16 @@ float sin_quarter(float u) {
     return sine < 1.0 ? sine : 1.0;
 }
 
-// The part of x turns that remains without whole turns, -0.5..0.5; 0 if |x| > 2^22.
+// The part of x turns that remains without whole turns, -0.5..0.5; 0 if |x| < TINY or |x| > 2^22.
 float turn_fraction(float x) {
-    float inside = abs(x) <= 4194304.0 ? x : 0.0;
+    float inside = abs(x) >= TINY && abs(x) <= 4194304.0 ? x : 0.0;
     return inside - floor(inside + 0.5);
 }
 
-// x radians in turns without whole turns, -0.5..0.5; 0 if |x| > 8192.
+// x radians in turns without whole turns, -0.5..0.5; 0 if |x| < TINY or |x| > 8192.
 // 2 pi is subtracted in two parts, the first of nine bits (Cody and Waite 1980).
 float radians_fraction(float x) {
-    float inside = abs(x) <= 8192.0 ? x : 0.0;
+    float inside = abs(x) >= TINY && abs(x) <= 8192.0 ? x : 0.0;
     float turns = floor(inside * INV_TWO_PI + 0.5);
     return ((inside - turns * 6.28125) - turns * 0.00193530717) * INV_TWO_PI;
 }
@@ -132,7 +133,7 @@ float sin_fraction(float r) {
     return r < 0.0 ? -folded : folded;
 }
 
-// sin(2 pi x), -1..1, within 2e-7 for |x| <= 2^22 turns; beyond as for 0.
+// sin(2 pi x), -1..1, within 2e-7 for |x| <= 2^22 turns; beyond, and for |x| < TINY, as for 0.
 float sin_turns(float x) {
     return sin_fraction(turn_fraction(x));
 }
@@ -142,7 +143,7 @@ float cos_turns(float x) {
     return sin_quarter(0.25 - abs(turn_fraction(x)));
 }
 
-// sin(x), x in radians, within 5e-7 for |x| <= 8192; beyond as for 0.
+// sin(x), x in radians, within 5e-7 for |x| <= 8192; beyond, and for |x| < TINY, as for 0.
 float sin_(float x) {
     return sin_fraction(radians_fraction(x));
 }
@@ -218,13 +219,13 @@ float log_(float x) {
     return ((parts.exponent * -0.000212194442 + parts.rest) + parts.f) + parts.exponent * 0.693359375;
 }
 
-// x^y for x >= 0 and finite y, within 2 ULP + |y log2 x| 2.5e-7 relative. 1 if y = 0; x below 2^-126 counts as 0,
+// x^y for x >= 0 and finite y, within 2 ULP + |y log2 x| 2.5e-7 relative. 1 if |y| < TINY; x below 2^-126 counts as 0,
 // whose power is 0 for y > 0 and 2^127 for y < 0. Results lie in 2^-126..2^127 or are 0.
 float pow_(float x, float y) {
     float power = exp2_(y * log2_(x));
     float zeroth = y > 0.0 ? 0.0 : LARGEST_POWER;
     float result = x >= 1.17549435e-38 ? power : zeroth;
-    return y == 0.0 ? 1.0 : result;
+    return abs(y) < TINY ? 1.0 : result;
 }
 
 // The angle of (x, y) from the x axis, -pi..pi, within 4e-7, where max(|x|, |y|) is in 2^-75..2^99.
@@ -262,13 +263,14 @@ float acos_(float x) {
     return x < 0.0 ? PI - positive : positive;
 }
 
-// asin(x), -pi/2..pi/2, within 3e-7; x is clamped to -1..1.
+// asin(x), -pi/2..pi/2, within 3e-7; x is clamped to -1..1. 0 if |x| < TINY.
 float asin_(float x) {
     float size = min_(abs(x), 1.0);
     bool steep = size > 0.5;
     float z = steep ? (1.0 - size) * 0.5 : size * size;
     float angle = asin_half(steep ? sqrt_(z) : size, z);
-    float positive = steep ? HALF_PI - 2.0 * angle : angle;
+    float small = size >= TINY ? angle : 0.0;
+    float positive = steep ? HALF_PI - 2.0 * angle : small;
     return x < 0.0 ? -positive : positive;
 }
 
@@ -277,10 +279,13 @@ int exponent_(float x) {
     return int((floatBitsToUint(x) >> 23u) & 0xffu) - 127;
 }
 
-// x 2^n for n in -126..127 (clamped); exact while the result is a normal float.
+// x 2^n for n in -126..127 (clamped); exact while the result is a normal float, 0 where it would be subnormal.
 float ldexp_(float x, int n) {
     int low = n > -126 ? n : -126;
-    return x * power_of_two(low < 127 ? low : 127);
+    int inside = low < 127 ? low : 127;
+    float scaled = x * power_of_two(inside);
+    // By the exponents, since devices differ in whether they round or flush first.
+    return exponent_(x) + inside >= -126 ? scaled : 0.0;
 }
 
 // a (1 - t) + b t: a at t = 0, b at t = 1.

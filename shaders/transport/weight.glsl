@@ -23,11 +23,12 @@ float survival(Spectrum throughput, float eta) {
 }
 
 // Whether light may go from `wo` to `wi` (world): on the shading frame and on the surface itself they must be on the same
-// side for reflection, on different sides for transmission. Else light would leak through the surface.
+// side for reflection, on different sides for transmission. Else light would leak through the surface. Neither, where a
+// product of cosines is below TINY: devices may flush it to zero.
 bool consistent(Surface surface, vec3 wo, vec3 wi, vec3 wo_local, vec3 wi_local) {
     float geometric = dot3(surface.normal_geometric, wo) * dot3(surface.normal_geometric, wi);
     float shading = wo_local.z * wi_local.z;
-    return (geometric > 0.0 && shading > 0.0) || (geometric < 0.0 && shading < 0.0);
+    return (geometric >= TINY && shading >= TINY) || (geometric <= -TINY && shading <= -TINY);
 }
 
 #endif

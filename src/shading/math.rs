@@ -6,7 +6,8 @@
 //! proved by `tests/math.rs`.
 //!
 //! Devices may flush subnormal numbers to zero, also those inside a formula. Division and roots therefore work on
-//! magnitudes from `TINY` to `HUGE` only, where none occurs.
+//! magnitudes from `TINY` to `HUGE` only, where none occurs; sines take what is smaller than `TINY` for zero, and no
+//! function of this file makes a subnormal but sums, products and choices, which give what they are given.
 
 use glam::{Vec2, Vec3};
 use wide::{f32x4, u32x4};
@@ -140,18 +141,18 @@ fn sin_quarter(u: f32) -> f32 {
     if sine < 1.0 { sine } else { 1.0 }
 }
 
-/// The part of x turns that remains without whole turns, -0.5..0.5; 0 if |x| > 2^22.
+/// The part of x turns that remains without whole turns, -0.5..0.5; 0 if |x| < TINY or |x| > 2^22.
 #[inline(always)]
 fn turn_fraction(x: f32) -> f32 {
-    let inside = if x.abs() <= 4194304.0 { x } else { 0.0 };
+    let inside = if x.abs() >= TINY && x.abs() <= 4194304.0 { x } else { 0.0 };
     inside - (inside + 0.5).floor()
 }
 
-/// x radians in turns without whole turns, -0.5..0.5; 0 if |x| > 8192.
+/// x radians in turns without whole turns, -0.5..0.5; 0 if |x| < TINY or |x| > 8192.
 /// 2 pi is subtracted in two parts, the first of nine bits (Cody and Waite 1980).
 #[inline(always)]
 fn radians_fraction(x: f32) -> f32 {
-    let inside = if x.abs() <= 8192.0 { x } else { 0.0 };
+    let inside = if x.abs() >= TINY && x.abs() <= 8192.0 { x } else { 0.0 };
     let turns = (inside * INV_TWO_PI + 0.5).floor();
     ((inside - turns * 6.28125) - turns * 0.00193530717) * INV_TWO_PI
 }
@@ -164,7 +165,7 @@ fn sin_fraction(r: f32) -> f32 {
     if r < 0.0 { -folded } else { folded }
 }
 
-/// sin(2 pi x), -1..1, within 2e-7 for |x| <= 2^22 turns; beyond as for 0.
+/// sin(2 pi x), -1..1, within 2e-7 for |x| <= 2^22 turns; beyond, and for |x| < TINY, as for 0.
 #[inline]
 pub fn sin_turns(x: f32) -> f32 {
     sin_fraction(turn_fraction(x))
@@ -176,7 +177,7 @@ pub fn cos_turns(x: f32) -> f32 {
     sin_quarter(0.25 - turn_fraction(x).abs())
 }
 
-/// sin(x), x in radians, within 5e-7 for |x| <= 8192; beyond as for 0.
+/// sin(x), x in radians, within 5e-7 for |x| <= 8192; beyond, and for |x| < TINY, as for 0.
 #[inline]
 pub fn sin_(x: f32) -> f32 {
     sin_fraction(radians_fraction(x))
@@ -261,14 +262,14 @@ pub fn log_(x: f32) -> f32 {
     ((parts.exponent * -0.000212194442 + parts.rest) + parts.f) + parts.exponent * 0.693359375
 }
 
-/// x^y for x >= 0 and finite y, within 2 ULP + |y log2 x| 2.5e-7 relative. 1 if y = 0; x below 2^-126 counts as 0,
+/// x^y for x >= 0 and finite y, within 2 ULP + |y log2 x| 2.5e-7 relative. 1 if |y| < TINY; x below 2^-126 counts as 0,
 /// whose power is 0 for y > 0 and 2^127 for y < 0. Results lie in 2^-126..2^127 or are 0.
 #[inline]
 pub fn pow_(x: f32, y: f32) -> f32 {
     let power = exp2_(y * log2_(x));
     let zeroth = if y > 0.0 { 0.0 } else { LARGEST_POWER };
     let result = if x >= 1.17549435e-38 { power } else { zeroth };
-    if y == 0.0 { 1.0 } else { result }
+    if y.abs() < TINY { 1.0 } else { result }
 }
 
 /// The angle of (x, y) from the x axis, -pi..pi, within 4e-7, where max(|x|, |y|) is in 2^-75..2^99.
@@ -309,14 +310,15 @@ pub fn acos_(x: f32) -> f32 {
     if x < 0.0 { PI - positive } else { positive }
 }
 
-/// asin(x), -pi/2..pi/2, within 3e-7; x is clamped to -1..1.
+/// asin(x), -pi/2..pi/2, within 3e-7; x is clamped to -1..1. 0 if |x| < TINY.
 #[inline]
 pub fn asin_(x: f32) -> f32 {
     let size = min_(x.abs(), 1.0);
     let steep = size > 0.5;
     let z = if steep { (1.0 - size) * 0.5 } else { size * size };
     let angle = asin_half(if steep { sqrt_(z) } else { size }, z);
-    let positive = if steep { HALF_PI - 2.0 * angle } else { angle };
+    let small = if size >= TINY { angle } else { 0.0 };
+    let positive = if steep { HALF_PI - 2.0 * angle } else { small };
     if x < 0.0 { -positive } else { positive }
 }
 
@@ -326,11 +328,14 @@ pub fn exponent_(x: f32) -> i32 {
     ((x.to_bits() >> 23) & 0xff) as i32 - 127
 }
 
-/// x 2^n for n in -126..127 (clamped); exact while the result is a normal float.
+/// x 2^n for n in -126..127 (clamped); exact while the result is a normal float, 0 where it would be subnormal.
 #[inline]
 pub fn ldexp_(x: f32, n: i32) -> f32 {
     let low = if n > -126 { n } else { -126 };
-    x * power_of_two(if low < 127 { low } else { 127 })
+    let inside = if low < 127 { low } else { 127 };
+    let scaled = x * power_of_two(inside);
+    // By the exponents, since devices differ in whether they round or flush first.
+    if exponent_(x) + inside >= -126 { scaled } else { 0.0 }
 }
 
 /// a (1 - t) + b t: a at t = 0, b at t = 1.

@@ -1,6 +1,6 @@
 //! Decisions of a path that need no scene.
 
-use crate::shading::math::{div, dot3, min_, rcp};
+use crate::shading::math::{TINY, div, dot3, min_, rcp};
 use crate::shading::spectrum::{Spectrum, spectrum_max};
 use crate::trace::surface::Surface;
 use glam::Vec3;
@@ -24,10 +24,11 @@ pub fn survival(throughput: Spectrum, eta: f32) -> f32 {
 }
 
 /// Whether light may go from `wo` to `wi` (world): on the shading frame and on the surface itself they must be on the same
-/// side for reflection, on different sides for transmission. Else light would leak through the surface.
+/// side for reflection, on different sides for transmission. Else light would leak through the surface. Neither, where a
+/// product of cosines is below TINY: devices may flush it to zero.
 #[inline]
 pub fn consistent(surface: &Surface, wo: Vec3, wi: Vec3, wo_local: Vec3, wi_local: Vec3) -> bool {
     let geometric = dot3(surface.normal_geometric, wo) * dot3(surface.normal_geometric, wi);
     let shading = wo_local.z * wi_local.z;
-    (geometric > 0.0 && shading > 0.0) || (geometric < 0.0 && shading < 0.0)
+    (geometric >= TINY && shading >= TINY) || (geometric <= -TINY && shading <= -TINY)
 }

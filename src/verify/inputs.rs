@@ -8,9 +8,11 @@ pub const ARGUMENTS: usize = 16;
 /// What one or more argument words may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Domain {
-    /// Any float at all: every bit pattern, NaN and subnormals included.
+    /// Any float at all: every bit pattern, NaN and subnormals included. For functions that say what they make of those.
     Bits,
-    /// Uniform in min..max.
+    /// Any float that is not subnormal.
+    Normal,
+    /// Uniform in min..max; 0, but nothing else smaller than `DUST`.
     Range(f32, f32),
     /// Either sign, magnitude 2^min..2^max with uniform exponent.
     Exponent(i32, i32),
@@ -31,6 +33,11 @@ impl Domain {
         }
     }
 }
+
+/// 2^-60. The product of two numbers that are not smaller, and of what they are made into, is far from subnormal.
+const DUST: f32 = 8.6736174e-19;
+/// The sign bit of a float.
+const SIGN: u32 = 0x8000_0000;
 
 /// Floats at which rounding, range checks and special cases change.
 const EDGES: [u32; 24] = [
@@ -68,7 +75,7 @@ const EDGE_DIRECTIONS: [[f32; 3]; 8] = [
     [1.0, 0.0, 1.0e-7],
     [-0.70710677, 0.0, 0.70710677],
     [0.70710677, 0.0, 0.70710677],
-    [0.0, 1.0, 1.0e-30],
+    [0.0, 1.0, DUST],
     [0.0006, 0.0, 0.99999982],
 ];
 
@@ -100,7 +107,10 @@ fn edge(domain: Domain, bits: u32) -> Option<u32> {
     let value = f32::from_bits(bits);
     match domain {
         Domain::Bits => Some(bits),
-        Domain::Range(min, max) => (value >= min && value <= max).then_some(bits),
+        Domain::Normal => (!value.is_subnormal()).then_some(bits),
+        Domain::Range(min, max) => {
+            (value >= min && value <= max && (value == 0.0 || value.abs() >= DUST)).then_some(bits)
+        }
         Domain::Exponent(min, max) => {
             let exponent = ((bits >> 23) & 0xff) as i32 - 127;
             (exponent >= min && exponent < max).then_some(bits)
@@ -113,6 +123,10 @@ fn edge(domain: Domain, bits: u32) -> Option<u32> {
 fn random(domain: Domain, words: &mut Words, out: &mut Vec<u32>) {
     match domain {
         Domain::Bits => out.push(words.next()),
+        Domain::Normal => {
+            let word = words.next();
+            out.push(if f32::from_bits(word).is_subnormal() { word & SIGN } else { word });
+        }
         Domain::Range(min, max) => {
             out.push(((f64::from(min) + (f64::from(max) - f64::from(min)) * words.unit()) as f32).to_bits());
         }
@@ -158,6 +172,18 @@ pub fn arguments(domains: &[Domain], count: usize, seed: u32) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn subnormal_numbers_are_for_functions_that_take_any_bits_alone() {
+        let domains = [Domain::Bits, Domain::Normal, Domain::Range(-1.0, 1.0), Domain::Exponent(-126, -120)];
+        let mut subnormal = [0; 4];
+        for set in arguments(&domains, 1 << 16, 1).chunks(ARGUMENTS) {
+            for (count, word) in subnormal.iter_mut().zip(set) {
+                *count += u32::from(f32::from_bits(*word).is_subnormal());
+            }
+        }
+        assert!(subnormal[0] > 100 && subnormal[1..] == [0; 3], "{subnormal:?}");
+    }
 
     #[test]
     fn arguments_lie_in_their_domain_and_reach_its_edges() {

@@ -2,7 +2,7 @@
 
 use super::{Family, Twin};
 use crate::shading::math::*;
-use crate::verify::inputs::Domain::{Below, Bits, Exponent, Range};
+use crate::verify::inputs::Domain::{Below, Bits, Exponent, Normal, Range};
 
 /// Two vectors of ordinary size.
 const TWO_VECTORS: [crate::verify::inputs::Domain; 6] = [Exponent(-20, 20); 6];
@@ -138,14 +138,14 @@ pub const FAMILY: Family = Family {
         },
         Twin {
             name: "min_ max_",
-            domains: &[Bits, Bits],
+            domains: &[Normal, Normal],
             run: |i, o| {
                 o.f(min_(i.f(0), i.f(1))).f(max_(i.f(0), i.f(1)));
             },
         },
         Twin {
             name: "clamp_",
-            domains: &[Bits, Range(-1.0, 0.0), Range(0.0, 1.0)],
+            domains: &[Normal, Range(-1.0, 0.0), Range(0.0, 1.0)],
             run: |i, o| {
                 o.f(clamp_(i.f(0), i.f(1), i.f(2)));
             },
@@ -195,7 +195,7 @@ pub const FAMILY: Family = Family {
         },
         Twin {
             name: "max3_ min3_",
-            domains: &[Bits; 3],
+            domains: &[Normal; 3],
             run: |i, o| {
                 o.f(max3_(i.v3(0))).f(min3_(i.v3(0)));
             },
@@ -209,7 +209,7 @@ pub const FAMILY: Family = Family {
         },
         Twin {
             name: "normalize3",
-            domains: &[Bits; 3],
+            domains: &[Normal; 3],
             run: |i, o| {
                 o.v3(normalize3(i.v3(0)));
             },

@@ -78,6 +78,8 @@ impl In<'_> {
 #[derive(Default)]
 pub struct Out {
     words: [u32; RESULTS],
+    /// Which of them are floats.
+    floats: [bool; RESULTS],
     count: usize,
 }
 
@@ -89,6 +91,7 @@ impl Out {
     }
 
     pub fn f(&mut self, value: f32) -> &mut Self {
+        self.floats[self.count] = true;
         self.u(value.to_bits())
     }
 
@@ -132,9 +135,20 @@ impl std::fmt::Display for Mismatch {
     }
 }
 
-/// NaNs compare as equal: no strict function makes one from arguments in its domain, and their bits are free.
-fn same(a: u32, b: u32) -> bool {
-    a == b || (f32::from_bits(a).is_nan() && f32::from_bits(b).is_nan())
+impl Out {
+    /// Whether a device's results are these, as far as anything may depend on them (ARCHITECTURE.md, "Strict arithmetic"):
+    /// integers by their bits; of floats every zero is the same, of either sign or a subnormal that devices may flush, and
+    /// so is every NaN, since no strict function makes one from arguments in its domain.
+    fn agrees(&self, device: &[u32]) -> bool {
+        let mine = self.words.iter().zip(self.floats).take(self.count);
+        mine.zip(device)
+            .all(|((&a, is_float), &b)| a == b || is_float && same_float(f32::from_bits(a), f32::from_bits(b)))
+    }
+}
+
+fn same_float(a: f32, b: f32) -> bool {
+    let is_zero = |x: f32| x.abs() < f32::MIN_POSITIVE;
+    a == b || is_zero(a) && is_zero(b) || a.is_nan() && b.is_nan()
 }
 
 /// Results of one twin in Rust, `RESULTS` words for each set of `ARGUMENTS` words.
@@ -200,7 +214,7 @@ fn compare_inputs(
     for (set, device) in inputs.chunks(ARGUMENTS).zip(device.chunks(RESULTS)) {
         let mut out = Out::default();
         (twin.run)(&In(set), &mut out);
-        if !out.words[..out.count].iter().zip(device).all(|(a, b)| same(*a, *b)) {
+        if !out.agrees(device) {
             differ += 1;
             first.get_or_insert_with(|| Mismatch {
                 twin: twin.name.to_owned(),
@@ -211,4 +225,34 @@ fn compare_inputs(
         }
     }
     Ok((differ, first))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_agree_whatever_their_sign_and_what_a_device_may_flush_is_one() {
+        let agrees = |mine: f32, device: f32| {
+            let mut out = Out::default();
+            out.f(mine);
+            out.agrees(&[device.to_bits()])
+        };
+        let (least, greatest) = (f32::from_bits(1), f32::from_bits(0x007f_ffff));
+        for (a, b) in [(0.0, -0.0), (least, 0.0), (-greatest, 0.0), (-least, greatest), (f32::NAN, -f32::NAN)] {
+            assert!(agrees(a, b) && agrees(b, a), "{a} and {b}");
+        }
+        for (a, b) in [(f32::MIN_POSITIVE, 0.0), (1.0, 1.0 + f32::EPSILON), (1.0, -1.0), (f32::NAN, 0.0)] {
+            assert!(!agrees(a, b) && !agrees(b, a), "{a} and {b}");
+        }
+    }
+
+    #[test]
+    fn integers_agree_by_their_bits() {
+        let mut out = Out::default();
+        out.u(0).u(1);
+        assert!(out.agrees(&[0, 1]));
+        // As floats these would be zeros.
+        assert!(!out.agrees(&[0x8000_0000, 1]) && !out.agrees(&[0, 0]));
+    }
 }
