@@ -1,11 +1,12 @@
-//! Eight-wide hierarchies: obvhs builds their parts, everything else about them is ours.
+//! Eight-wide hierarchies.
 //!
-//! Many boxes are cut into parts first (`split`), obvhs makes a binary tree of each, and all of it becomes one eight-wide tree
-//! (`wide`): parts stay in the cache of the core that works on them. obvhs's own wide boxes are not conservative and its
-//! depth has no bound, so boxes are quantised here, from the exact bounds of what lies below, and a tree too deep for the
-//! traversal stack is replaced by a median split.
+//! Many boxes are cut into parts first (`split`), each becomes a binary tree (`ploc`) that obvhs improves, and all of it
+//! becomes one eight-wide tree (`wide`): parts stay in the cache of the core that works on them. obvhs's own wide boxes are
+//! not conservative and its depth has no bound, so boxes are quantised here, from the exact bounds of what lies below, and a
+//! tree too deep for the traversal stack is replaced by a median split.
 
 use super::places::{NODES_MOST, Places};
+use super::ploc::Ploc;
 use super::split::{Cut, cut};
 use super::wide::{Part, widen};
 use super::{BakeError, check};
@@ -14,10 +15,8 @@ use crate::watch::Watch;
 use glam::{Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::ploc::{PlocBuilder, SortPrecision};
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -28,10 +27,6 @@ pub const TOP_LEAF: u32 = 1;
 /// Primitives of a part at most: its nodes are 4 MB, and what obvhs needs to make them is no more. Larger parts make better
 /// trees of few and unequal triangles (by 2 % for a kitchen of 57,000), smaller ones of many and alike (by 1 % for 4 million).
 const PART: usize = 1 << 16;
-/// How far obvhs looks for a partner of a cluster, and the first passes that look at neighbours only. Those of its preset for
-/// medium quality (14 and 3) take longer and gain nothing: costs are 0 to 1 % higher (kitchen, hairball and terrain).
-const SEARCH_DISTANCE: usize = 6;
-const SEARCH_DEPTH: usize = 1;
 
 /// Smallest and largest raw exponent of a node's grid: 2^-100, so that no distance is subnormal, to 2^100.
 const EXPONENT_RANGE: (i32, i32) = (27, 227);
@@ -94,7 +89,14 @@ impl Tree {
         let start = Instant::now();
         let (top, parts) = binary(items, leaf, PART, watch)?;
         let binary_s = start.elapsed().as_secs_f64();
-        let (mut nodes, mut order, mut stack) = widen(&top, &parts, watch)?;
+        let mut tree = Self::of_binary(&top, &parts, leaf, watch)?;
+        tree.seconds = [binary_s, start.elapsed().as_secs_f64() - binary_s];
+        Ok(tree)
+    }
+
+    /// The tree that a binary one becomes, or another if that is too deep.
+    fn of_binary(top: &Part, parts: &[Part], leaf: u32, watch: &Watch) -> Result<Self, BakeError> {
+        let (mut nodes, mut order, mut stack) = widen(top, parts, watch)?;
         if stack > STACK_SIZE {
             let items: Vec<Item> = parts.iter().flat_map(Part::leaves).copied().collect();
             (nodes, order, stack) = median_split(&items, leaf);
@@ -102,9 +104,7 @@ impl Tree {
                 return Err(BakeError::Nodes { count: nodes.len() });
             }
         }
-        let wide_s = start.elapsed().as_secs_f64() - binary_s;
-        let bounds = Some(Bounds::from(top.bounds()));
-        Ok(Self { nodes, order, stack, bounds, seconds: [binary_s, wide_s] })
+        Ok(Self { nodes, order, stack, bounds: Some(Bounds::from(top.bounds())), seconds: [0.0; 2] })
     }
 }
 
@@ -118,13 +118,13 @@ pub(super) fn binary(
     let cut = cut(&mut items, part, 0, 0);
     let mut ranges = Vec::new();
     let mut nodes = top_nodes(&cut, &mut ranges);
-    let build = |builder: &mut PlocBuilder, range: &std::ops::Range<usize>| {
+    let build = |builder: &mut Ploc, range: &std::ops::Range<usize>| {
         check(watch)?;
         let part = Part::of_primitives(part_nodes(builder, &items[range.clone()]), leaf);
         watch.advance(range.len() as i64);
         Ok(part)
     };
-    let parts = ranges.par_iter().map_init(PlocBuilder::new, build).collect::<Result<Vec<Part>, BakeError>>()?;
+    let parts = ranges.par_iter().map_init(Ploc::default, build).collect::<Result<Vec<Part>, BakeError>>()?;
     for index in (0..nodes.len()).rev() {
         let node = &nodes[index];
         let first = node.first_index as usize;
@@ -159,13 +159,8 @@ fn top_nodes(cut: &Cut, ranges: &mut Vec<std::ops::Range<usize>>) -> Vec<Item> {
 }
 
 /// The binary tree over `items`, one at least.
-fn part_nodes(builder: &mut PlocBuilder, items: &[Item]) -> Vec<Item> {
-    let around = items.iter().fold(Aabb::INVALID, |all, item| all.union(item.aabb()));
-    builder.current_nodes.clear();
-    builder.current_nodes.extend_from_slice(items);
-    // The steps of obvhs's `build_cwbvh` up to the binary tree.
-    let mut tree = Bvh2::default();
-    builder.build_ploc_from_leaves::<SEARCH_DISTANCE, false>(&mut tree, around, SortPrecision::U64, SEARCH_DEPTH);
+fn part_nodes(builder: &mut Ploc, items: &[Item]) -> Vec<Item> {
+    let mut tree = builder.build(items);
     ReinsertionOptimizer::default().run(&mut tree, BvhBuildParams::medium_build().reinsertion_batch_ratio, None);
     tree.nodes
 }
@@ -356,14 +351,37 @@ mod tests {
         boxes
     }
 
+    /// A binary tree that takes four items after the other from the rest, two at least.
+    fn chain(items: &[Item]) -> Vec<Item> {
+        let (mut nodes, mut waiting) = (vec![Item::default()], vec![(0, items)]);
+        while let Some((at, inside)) = waiting.pop() {
+            if let [item] = inside {
+                nodes[at] = *item;
+                continue;
+            }
+            let (near, rest) = inside.split_at(if inside.len() > 4 { 4 } else { inside.len() / 2 });
+            let first = nodes.len();
+            nodes[at] = Item::new(Aabb::INVALID, 0, first as u32);
+            nodes.extend([Item::default(); 2]);
+            waiting.extend([(first, near), (first + 1, rest)]);
+        }
+        for at in (0..nodes.len()).rev().filter(|&at| !nodes[at].is_leaf()).collect::<Vec<_>>() {
+            let first = nodes[at].first_index as usize;
+            let around = nodes[first].aabb().union(nodes[first + 1].aabb());
+            nodes[at].set_aabb(around);
+        }
+        nodes
+    }
+
     #[test]
     fn a_tree_too_deep_for_the_stack_is_shallow_after_a_median_split() {
         let boxes = cascade(800, 0.9);
         let items: Vec<Item> = (0..).zip(&boxes).map(|(number, &bounds)| item(bounds, number)).collect();
-        let (top, parts) = binary(items.clone(), MESH_LEAF, PART, &Watch::default()).expect("nobody aborts");
+        let parts = [Part::of_primitives(chain(&items), MESH_LEAF)];
+        let top = Part::of_parts(vec![Item::new(*parts[0].bounds(), 1, 0)], &parts, MESH_LEAF);
         let (_, _, deep) = widen(&top, &parts, &Watch::default()).expect("nobody aborts");
         assert!(deep > STACK_SIZE, "{deep}");
-        let flat = Tree::build(items, MESH_LEAF, &Watch::default()).expect("nobody aborts");
+        let flat = Tree::of_binary(&top, &parts, MESH_LEAF, &Watch::default()).expect("nobody aborts");
         assert!(flat.stack <= 5, "{}", flat.stack);
         let mut order = flat.order.clone();
         order.sort_unstable();

@@ -18,6 +18,7 @@ mod media;
 mod mip;
 mod model;
 mod places;
+mod ploc;
 mod scene;
 pub mod shapes;
 mod split;
