@@ -4,7 +4,7 @@
 //! light that does not, and a light sky; a room is seen from inside. Everything is derived from the model's own bounds, so
 //! its size and place do not matter.
 
-use super::bounds::{Bounds, Room, free_distance};
+use super::bounds::{Bounds, Room, free_distances};
 use crate::scene::{
     Attenuation, Background, Camera, Film, Filter, Flaps, Geometry, Integrator, IntensityUnit, Light, LightKind,
     Material, MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, Shading, Shadows, ToneMap,
@@ -154,7 +154,7 @@ fn room_camera(scene: &Scene, bounds: &Bounds, kind: Room) -> Camera {
     let centre = bounds.centre();
     // Front first: it wins where distances are equal.
     let ways = [DVec3::Z, DVec3::X, DVec3::NEG_Z, DVec3::NEG_X];
-    let free = ways.map(|way| free_distance(scene, centre, way));
+    let free = free_distances(scene, centre, ways);
     if let Some(open) = free.iter().position(Option::is_none)
         && kind == Room::Open
     {
@@ -197,7 +197,8 @@ fn light_object(scene: &mut Scene) {
 /// A lamp under the ceiling and a shadowless one beside the camera; their strength grows with the square of the room.
 fn light_room(scene: &mut Scene, bounds: &Bounds) {
     let centre = bounds.centre();
-    let ceiling = free_distance(scene, centre, DVec3::Y).unwrap_or(bounds.size().y * 0.5);
+    let [ceiling] = free_distances(scene, centre, [DVec3::Y]);
+    let ceiling = ceiling.unwrap_or(bounds.size().y * 0.5);
     let reach = bounds.size().max_element() * 0.5;
     let eye = scene.camera.eye;
     let lamp = (centre + DVec3::Y * (0.8 * ceiling)).as_vec3();
