@@ -206,20 +206,30 @@ fn kernels_bind_no_more_than_devices_are_asked_for() {
     let mut largest = [0; 4];
     for name in shaders::names() {
         for (fetch, at) in [(Fetch::Storage, 0), (Fetch::Texel, 2)] {
-            let found = bindings(shaders::kernel(name, fetch).expect("listed")).unwrap();
-            let count = |kind| found.iter().filter(|b| b.kind == kind).map(|b| b.count).sum::<u32>();
-            largest[at] = count(BindingKind::StorageBuffer).max(largest[at]);
-            largest[at + 1] = count(BindingKind::TexelBuffer).max(largest[at + 1]);
-            // The specification's minimum is 12.
-            assert!(count(BindingKind::UniformBuffer) <= 1, "{name} binds {found:?}");
+            let words = shaders::kernel(name, fetch).expect("listed");
+            // A scene of one page of each set, as most are; paths in groups or not, camera rays or others.
+            for (grouped, camera) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let constants = [(1, 1), (2, 1), (3, 1), (31, grouped), (32, camera)];
+                let found = bindings(&shaders::specialise(words, &constants).unwrap()).unwrap();
+                let count = |kind| found.iter().filter(|b| b.kind == kind).map(|b| b.count).sum::<u32>();
+                largest[at] = count(BindingKind::StorageBuffer).max(largest[at]);
+                largest[at + 1] = count(BindingKind::TexelBuffer).max(largest[at + 1]);
+                // The specification's minimum is 12.
+                assert!(count(BindingKind::UniformBuffer) <= 1, "{name} binds {found:?}");
+            }
         }
     }
-    let [storage, storage_texel, texel_storage, texel] = largest;
-    assert!(storage <= STORAGE_FETCH_STORAGE_BUFFERS && storage_texel == 0, "storage fetch binds {largest:?}");
-    assert!(texel_storage <= TEXEL_FETCH_STORAGE_BUFFERS && texel <= TEXEL_FETCH_TEXEL_BUFFERS, "texel: {largest:?}");
+    let needed = [STORAGE_FETCH_STORAGE_BUFFERS, 0, TEXEL_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_TEXEL_BUFFERS];
+    assert_eq!(largest, needed, "storage and texel buffers under storage and under texel fetch");
     let shade = bindings(shaders::kernel("shade", Fetch::Texel).expect("embedded")).unwrap();
     assert_eq!(shade[0], Binding { set: 0, binding: 0, kind: BindingKind::UniformBuffer, count: 1 });
-    assert!(storage > TEXEL_FETCH_STORAGE_BUFFERS, "a kernel fetches the scene: {largest:?}");
+    let pages = |(nodes, triangles, data)| {
+        let words = shaders::kernel("extend", Fetch::Storage).expect("embedded");
+        let words = shaders::specialise(words, &[(1, nodes), (2, triangles), (3, data)]).unwrap();
+        bindings(&words).unwrap().iter().filter(|b| b.set == 0).skip(1).map(|b| b.count).collect::<Vec<_>>()
+    };
+    assert_eq!(pages((1, 1, 1)), [1, 1, 1]);
+    assert_eq!(pages((8, 2, 3)), [8, 2, 3]);
 }
 
 #[test]

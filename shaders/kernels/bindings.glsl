@@ -15,9 +15,10 @@ uvec4 fetch_batch(uint at);
 
 layout(local_size_x_id = 0, local_size_y = 1, local_size_z = 1) in;
 layout(constant_id = 0) const uint GROUP_SIZE = 64u;
-layout(constant_id = 1) const uint NODE_PAGES = 1u;
-layout(constant_id = 2) const uint TRIANGLE_PAGES = 1u;
-layout(constant_id = 3) const uint DATA_PAGES = 1u;
+// As many as there may be; the specialisation leaves what the scene has, and a kernel binds no more.
+layout(constant_id = 1) const uint NODE_PAGES = 8u;
+layout(constant_id = 2) const uint TRIANGLE_PAGES = 8u;
+layout(constant_id = 3) const uint DATA_PAGES = 8u;
 layout(constant_id = 4) const uint PAGE_SHIFT = 31u;
 // Entries of each traversal stack that the scene's hierarchies need.
 layout(constant_id = 5) const uint STACK_DEPTH = 32u;
@@ -84,14 +85,14 @@ uvec4 fetch_header(uint at) { return header_words[at] + gl_WorkGroupID.y; }
 // Read by `begin`, while no lane is masked.
 SceneHeader header;
 #ifdef FETCH_TEXEL
-layout(set = 0, binding = 1) uniform usamplerBuffer node_pages[8];
-layout(set = 0, binding = 2) uniform usamplerBuffer triangle_pages[8];
-layout(set = 0, binding = 3) uniform usamplerBuffer data_pages[8];
+layout(set = 0, binding = 1) uniform usamplerBuffer node_pages[NODE_PAGES];
+layout(set = 0, binding = 2) uniform usamplerBuffer triangle_pages[TRIANGLE_PAGES];
+layout(set = 0, binding = 3) uniform usamplerBuffer data_pages[DATA_PAGES];
 #define GONIO_READ(buffers, page, at) texelFetch(buffers[page], int(at))
 #else
-layout(set = 0, binding = 1, scalar) readonly buffer NodePage { uvec4 words[]; } node_pages[8];
-layout(set = 0, binding = 2, scalar) readonly buffer TrianglePage { uvec4 words[]; } triangle_pages[8];
-layout(set = 0, binding = 3, scalar) readonly buffer DataPage { uvec4 words[]; } data_pages[8];
+layout(set = 0, binding = 1, scalar) readonly buffer NodePage { uvec4 words[]; } node_pages[NODE_PAGES];
+layout(set = 0, binding = 2, scalar) readonly buffer TrianglePage { uvec4 words[]; } triangle_pages[TRIANGLE_PAGES];
+layout(set = 0, binding = 3, scalar) readonly buffer DataPage { uvec4 words[]; } data_pages[DATA_PAGES];
 #define GONIO_READ(buffers, page, at) buffers[page].words[at]
 #endif
 

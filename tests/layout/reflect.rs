@@ -159,7 +159,8 @@ impl<'a> Reflection<'a> {
     fn constant(&self, id: Word) -> u32 {
         let instruction = self.instructions[&id];
         match (instruction.class.opcode, &instruction.operands[0]) {
-            (Op::Constant, Operand::LiteralBit32(bits)) => *bits,
+            // Of a specialisation constant the default.
+            (Op::Constant | Op::SpecConstant, Operand::LiteralBit32(bits)) => *bits,
             (Op::Bitcast, Operand::IdRef(of)) => self.constant(*of),
             other => panic!("{other:?} is no constant"),
         }

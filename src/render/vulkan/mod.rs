@@ -34,5 +34,5 @@ pub use queues::specialisation;
 pub use record::Recorder;
 pub use reflect::{Binding, BindingKind, bindings};
 pub use renderer::{VulkanOptions, VulkanRenderer};
-pub use scene::{FetchChoice, SceneBuffers};
+pub use scene::{FetchChoice, SceneBuffers, check_fit};
 pub use validation::Messages;

@@ -1,7 +1,10 @@
 //! The scene on the device: header, and three sets of pages (nodes, triangles, everything else).
 
 use super::context::Context;
-use super::device::{DeviceInfo, DeviceKind};
+use super::device::{
+    DeviceInfo, DeviceKind, Limits, STORAGE_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_STORAGE_BUFFERS,
+    TEXEL_FETCH_TEXEL_BUFFERS,
+};
 use super::memory::{Buffer, Place};
 use crate::bake::SceneData;
 use crate::render::RenderError;
@@ -80,6 +83,26 @@ fn page_bytes(info: &DeviceInfo, fetch: Fetch, page_limit: Option<u64>) -> u64 {
     binding.min(info.limits.allocation).min(page_limit.unwrap_or(u64::MAX))
 }
 
+/// An error if a device cannot bind as many `pages`.
+fn check_bindings(limits: &Limits, fetch: Fetch, pages: u64) -> Result<(), String> {
+    let more = u32::try_from(pages).unwrap_or(u32::MAX).saturating_sub(SET_NAMES.len() as u32);
+    let needed = match fetch {
+        Fetch::Storage => {
+            vec![(STORAGE_FETCH_STORAGE_BUFFERS.saturating_add(more), "storage", limits.stage_storage_buffers)]
+        }
+        Fetch::Texel => vec![
+            (TEXEL_FETCH_STORAGE_BUFFERS, "storage", limits.stage_storage_buffers),
+            (TEXEL_FETCH_TEXEL_BUFFERS.saturating_add(more), "texel", limits.stage_texel_buffers),
+        ],
+    };
+    match needed.into_iter().find(|(needed, _, limit)| needed > limit) {
+        Some((needed, name, limit)) => Err(format!(
+            "kernels bind {needed} {name} buffers for a scene of {pages} pages; this device allows {limit}"
+        )),
+        None => Ok(()),
+    }
+}
+
 /// Chooses the way of fetching and the pages.
 fn choose(
     info: &DeviceInfo,
@@ -95,20 +118,30 @@ fn choose(
     };
     let mut reasons = Vec::new();
     for &fetch in order {
-        let (name, can) = match fetch {
-            Fetch::Texel => ("texel", info.can_fetch_texel()),
-            Fetch::Storage => ("storage", info.can_fetch_storage()),
+        let name = match fetch {
+            Fetch::Texel => "texel",
+            Fetch::Storage => "storage",
         };
-        if !can {
-            reasons.push(format!("{} cannot bind enough {name} buffers", info.name));
-            continue;
-        }
-        match plan_pages(words, page_bytes(info, fetch, page_limit)) {
+        let plan = plan_pages(words, page_bytes(info, fetch, page_limit))
+            .and_then(|plan| check_bindings(&info.limits, fetch, plan.counts.iter().sum()).map(|()| plan));
+        match plan {
             Ok(plan) => return Ok((fetch, plan)),
             Err(reason) => reasons.push(format!("{name} buffers: {reason}")),
         }
     }
     Err(RenderError::TooLarge(format!("the scene does not fit: {}", reasons.join("; "))))
+}
+
+/// Words of each set: nodes, triangles, scene data.
+fn set_words(data: &SceneData) -> [u64; 3] {
+    let words = |bytes: usize| (bytes as u64).div_ceil(WORD);
+    let heap = heap_parts(data).map(|(first, bytes)| u64::from(first) + words(bytes.len()));
+    [words(size_of_val(&data.shapes.nodes[..])), words(size_of_val(&data.shapes.triangles[..])), heap.into_iter().max().unwrap_or(0)]
+}
+
+/// An error that says why a device cannot hold the scene where kernels fetch it as `choice` says. Nothing is opened.
+pub fn check_fit(info: &DeviceInfo, data: &SceneData, choice: FetchChoice) -> Result<(), RenderError> {
+    choose(info, choice, set_words(data), None).map(|_| ())
 }
 
 /// The scene's buffers.
@@ -131,10 +164,7 @@ impl SceneBuffers {
         let triangles: &[u8] = bytemuck::cast_slice(&data.shapes.triangles);
         let heap = heap_parts(data);
         let sets: [&[(u32, &[u8])]; 3] = [&[(0, nodes)], &[(0, triangles)], &heap];
-        let end = |parts: &[(u32, &[u8])]| {
-            parts.iter().map(|(first, bytes)| u64::from(*first) + (bytes.len() as u64).div_ceil(WORD)).max()
-        };
-        let words = sets.map(|parts| end(parts).unwrap_or(0));
+        let words = set_words(data);
         let (fetch, plan) = choose(context.info(), choice, words, page_limit)?;
 
         let header = context.buffer("scene header", size_of_val(&data.header) as u64, Place::Device)?;
@@ -216,6 +246,22 @@ mod tests {
     fn pages_are_powers_of_two_within_the_limit() {
         let plan = plan_pages([101, 64, 512], 100 * 16 + 5).unwrap();
         assert_eq!(plan, PagePlan { shift: 6, counts: [2, 1, 8] });
+    }
+
+    #[test]
+    fn a_device_of_the_roadmap_profile_binds_every_page_and_a_smaller_one_says_how_many_are_too_many() {
+        let limits =
+            |storage, texel| Limits { stage_storage_buffers: storage, stage_texel_buffers: texel, ..Limits::default() };
+        for fetch in [Fetch::Storage, Fetch::Texel] {
+            assert_eq!(check_bindings(&limits(30, 30), fetch, 24), Ok(()), "{fetch:?}");
+        }
+        assert_eq!(check_bindings(&limits(16, 0), Fetch::Storage, 11), Ok(()));
+        let error = check_bindings(&limits(16, 0), Fetch::Storage, 12).unwrap_err();
+        assert_eq!(error, "kernels bind 17 storage buffers for a scene of 12 pages; this device allows 16");
+        let error = check_bindings(&limits(4, 100), Fetch::Texel, 3).unwrap_err();
+        assert_eq!(error, "kernels bind 5 storage buffers for a scene of 3 pages; this device allows 4");
+        let error = check_bindings(&limits(16, 16), Fetch::Texel, 16).unwrap_err();
+        assert_eq!(error, "kernels bind 17 texel buffers for a scene of 16 pages; this device allows 16");
     }
 
     #[test]
