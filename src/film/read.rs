@@ -2,6 +2,7 @@
 
 use super::display::srgb_decode;
 use super::{Film, FilmError, Image, gfilm};
+use crate::picture::{self, Purpose};
 use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits};
 use std::fs::File;
 use std::io::{self, Cursor, Read};
@@ -48,8 +49,7 @@ pub fn read_film(path: &Path) -> Result<Film, FilmError> {
 }
 
 /// Reads a picture: PNG, JPEG, WebP, Radiance HDR, OpenEXR or gfilm; `-` is standard input.
-/// Integers are taken as sRGB. Of an EXR the first part with any of R, G, B is taken
-/// (those it lacks are 0), else the first with Y.
+/// Integers are taken as sRGB; of EXR and HDR files what `picture` says for `Purpose::Compared`.
 pub fn read_picture(path: &Path) -> Result<Picture, FilmError> {
     let source = open(path).map_err(|e| FilmError::read(path, e))?;
     read_picture_from(path, source)
@@ -65,10 +65,9 @@ pub fn read_picture_from(path: &Path, mut source: impl Read) -> Result<Picture, 
         return gfilm::read(path, &mut Cursor::new(bytes).chain(source)).map(|film| film_picture(&film));
     }
     let format = match bytes.as_slice() {
-        [0x76, 0x2f, 0x31, 0x01, ..] => None,
+        linear if linear.starts_with(&picture::exr::MAGIC) || linear.starts_with(picture::radiance::MAGIC) => None,
         [0x89, b'P', b'N', b'G', ..] => Some(ImageFormat::Png),
         [0xff, 0xd8, 0xff, ..] => Some(ImageFormat::Jpeg),
-        [b'#', b'?', ..] => Some(ImageFormat::Hdr),
         [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Some(ImageFormat::WebP),
         _ => {
             return Err(FilmError::bad(path, "not a PNG, JPEG, WebP, Radiance HDR, OpenEXR or gfilm file"));
@@ -76,8 +75,11 @@ pub fn read_picture_from(path: &Path, mut source: impl Read) -> Result<Picture, 
     };
     source.read_to_end(&mut bytes).map_err(io)?;
     match format {
-        None => read_exr(path, &bytes),
         Some(format) => read_with_image(path, &bytes, format),
+        None if bytes.starts_with(&picture::exr::MAGIC) => {
+            linear_picture(path, picture::exr::read(&bytes, Purpose::Compared, &check_size))
+        }
+        None => linear_picture(path, picture::radiance::read(&bytes, Purpose::Compared, &check_size)),
     }
 }
 
@@ -90,11 +92,10 @@ pub fn film_picture(film: &Film) -> Picture {
     Picture { image, codes: None, film_hash: Some(film.hash()) }
 }
 
-fn check_size(path: &Path, width: u64, height: u64) -> Result<(), FilmError> {
+fn check_size(width: u64, height: u64) -> Result<(), String> {
     let pixels = width.saturating_mul(height);
     if width == 0 || height == 0 || pixels > MAX_PIXELS {
-        let message = format!("the picture is {width}x{height}; 1 to {MAX_PIXELS} pixels are allowed");
-        return Err(FilmError::bad(path, message));
+        return Err(format!("the picture is {width}x{height}; 1 to {MAX_PIXELS} pixels are allowed"));
     }
     Ok(())
 }
@@ -102,17 +103,13 @@ fn check_size(path: &Path, width: u64, height: u64) -> Result<(), FilmError> {
 fn read_with_image(path: &Path, bytes: &[u8], format: ImageFormat) -> Result<Picture, FilmError> {
     let bad = |e: ImageError| FilmError::bad(path, e.to_string());
     let (width, height) = ImageReader::with_format(Cursor::new(bytes), format).into_dimensions().map_err(bad)?;
-    check_size(path, width.into(), height.into())?;
+    check_size(width.into(), height.into()).map_err(|message| FilmError::bad(path, message))?;
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
     limits.max_alloc = Some(16 * MAX_PIXELS);
     reader.limits(limits);
     let decoded = reader.decode().map_err(bad)?;
     Ok(match decoded {
-        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
-            let pixels = decoded.into_rgba32f().pixels().map(|pixel| pixel.0).collect();
-            Picture { image: Image { width, height, pixels }, codes: None, film_hash: None }
-        }
         DynamicImage::ImageLuma16(_)
         | DynamicImage::ImageLumaA16(_)
         | DynamicImage::ImageRgb16(_)
@@ -139,58 +136,8 @@ fn coded_picture(width: u32, height: u32, codes: Codes) -> Picture {
     Picture { image: Image { width, height, pixels }, codes: Some(codes), film_hash: None }
 }
 
-fn read_exr(path: &Path, bytes: &[u8]) -> Result<Picture, FilmError> {
-    use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, Vec2};
-    let bad = |e: exr::error::Error| FilmError::bad(path, e.to_string());
-    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(bad)?;
-    let has = |header: &exr::meta::header::Header, name: &str| header.channels.list.iter().any(|c| c.name.eq(name));
-    let find = |names: &[&'static str]| {
-        let named = |header: &_| names.iter().copied().find(|name| has(header, name));
-        meta.headers.iter().filter(|header| !header.deep).find_map(|header| Some((header, named(header)?)))
-    };
-    // `first_valid_layer` below takes the first part with channel `first`: this one, since none before has any.
-    let Some((header, first)) = find(&["R", "G", "B"]).or_else(|| find(&["Y"])) else {
-        return Err(FilmError::bad(path, "no part of this EXR has channels R, G, B or Y"));
-    };
-    let (width, height) = (header.layer_size.width(), header.layer_size.height());
-    check_size(path, width as u64, height as u64)?;
-    // Every chunk has at least an entry in the offset table and a header of its own.
-    if header.chunk_count.saturating_mul(16) > bytes.len() {
-        return Err(FilmError::bad(path, "truncated EXR: fewer bytes than its chunks need"));
-    }
-    if header.channels.list.iter().any(|c| c.sampling != Vec2(1, 1)) {
-        return Err(FilmError::bad(path, "subsampled EXR channels (luminance and chroma) are not supported"));
-    }
-
-    // The channel that is there for certain, then the other colours, which are 0 where absent.
-    let lanes = match first {
-        "G" => ["G", "R", "B"],
-        "B" => ["B", "R", "G"],
-        _ => [first, "G", "B"],
-    };
-    let arrange = move |[first, second, third, alpha]: [f32; 4]| match lanes[0] {
-        "Y" => [first, first, first, alpha],
-        "G" => [second, first, third, alpha],
-        "B" => [second, third, first, alpha],
-        _ => [first, second, third, alpha],
-    };
-    let read = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .specific_channels()
-        .required(lanes[0])
-        .optional(lanes[1], 0.0f32)
-        .optional(lanes[2], 0.0f32)
-        .optional("A", 1.0f32)
-        .collect_pixels(
-            |size: Vec2<usize>, _| vec![[0.0f32; 4]; size.area()],
-            move |pixels: &mut Vec<[f32; 4]>, at, (a, b, c, alpha): (f32, f32, f32, f32)| {
-                pixels[at.1 * width + at.0] = arrange([a, b, c, alpha]);
-            },
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes));
-    let pixels = read.map_err(bad)?.layer_data.channel_data.pixels;
-    Ok(Picture { image: Image { width: width as u32, height: height as u32, pixels }, codes: None, film_hash: None })
+/// The picture in a file of linear numbers.
+fn linear_picture(path: &Path, picture: Result<picture::Picture, String>) -> Result<Picture, FilmError> {
+    let picture::Picture { width, height, pixels } = picture.map_err(|message| FilmError::bad(path, message))?;
+    Ok(Picture { image: Image { width, height, pixels }, codes: None, film_hash: None })
 }

@@ -188,3 +188,16 @@ fn file_that_was_there_is_untouched_when_the_render_fails() {
     assert_eq!(folder.bytes("old.png"), b"precious");
     assert_eq!(folder.names(), ["bad.toml", "old.png", "scene.toml"], "no unfinished file is left");
 }
+
+#[test]
+fn compare_reads_a_crop_in_every_format_that_render_writes() {
+    let folder = Folder::new();
+    for name in ["a.exr", "a.gfilm", "a.hdr"] {
+        folder.cpu(&["render", "scene.toml", "-o", name, "--crop", "5,4,21,20"]);
+    }
+    // The data window of the EXR lies inside its display window; what is there is the picture.
+    assert_eq!((folder.picture("a.exr").image.width, folder.picture("a.exr").image.height), (16, 16));
+    folder.done(&["compare", "a.exr", "a.gfilm"]);
+    folder.done(&["compare", "a.gfilm", "a.exr"]);
+    folder.done(&["compare", "a.exr", "a.hdr", "--max-mse", "1e-4"]);
+}

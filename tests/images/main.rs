@@ -5,6 +5,7 @@ mod assets;
 mod comparing;
 mod display;
 mod formats;
+mod linear;
 mod output;
 
 use gonio::film::write::{Aov, Format, Picture};

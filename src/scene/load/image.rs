@@ -1,13 +1,15 @@
-//! Pictures as textures: PNG, JPEG, Radiance HDR, WebP, BMP, PNM and (by the file's name) TGA through `image`, OpenEXR through
-//! `exr`.
+//! Pictures as textures: PNG, JPEG, WebP, BMP, PNM and (by the file's name) TGA through `image`, OpenEXR and Radiance HDR
+//! through `picture`.
 
+use crate::picture::{self, Purpose};
 use crate::scene::{Location, SceneError, Texture, TextureData};
 use image::{DynamicImage, ImageDecoder, ImageReader};
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-/// What the numbers in an 8 or 16-bit picture stand for. HDR and EXR files are always linear.
+/// What the numbers in a picture stand for. HDR and EXR files are always linear; as data they are not even taken from other
+/// chromaticities to Rec. 709.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorSpace {
     /// Colour channels encoded as IEC 61966-2-1.
@@ -15,6 +17,15 @@ pub enum ColorSpace {
     Srgb,
     /// Data: roughness, heights, normals.
     Linear,
+}
+
+impl ColorSpace {
+    fn purpose(self) -> Purpose {
+        match self {
+            Self::Srgb => Purpose::Colors,
+            Self::Linear => Purpose::Data,
+        }
+    }
 }
 
 /// Texels along a side: what a 16-bit coordinate holds.
@@ -26,17 +37,31 @@ const DECODED_BYTES_MAX: u64 = TEXELS_MAX * 16;
 
 /// Reads the texture in the file `path`. The texture repeats, is filtered, and is not scaled.
 pub fn load_texture(path: &Path, space: ColorSpace) -> Result<Texture, SceneError> {
+    load_texture_for(path, space, space.purpose())
+}
+
+/// The same, of EXR and HDR files with another purpose.
+pub fn load_texture_for(path: &Path, space: ColorSpace, purpose: Purpose) -> Result<Texture, SceneError> {
     let bytes = std::fs::read(path).map_err(|source| SceneError::Io { location: Location::file(path), source })?;
-    texture_from_bytes(&bytes, path, space)
+    read_texture(&bytes, path, space, purpose)
 }
 
 /// Reads a texture from the bytes of a picture; `name` is its file, or what stands for one in messages.
 pub fn texture_from_bytes(bytes: &[u8], name: &Path, space: ColorSpace) -> Result<Texture, SceneError> {
-    let bad = |message: String| SceneError::bad(Location::file(name), message);
-    let (width, height, data) = match bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        true => decode_exr(bytes).map_err(bad)?,
-        false => decode(bytes, name, space).map_err(bad)?,
+    read_texture(bytes, name, space, space.purpose())
+}
+
+fn read_texture(bytes: &[u8], name: &Path, space: ColorSpace, purpose: Purpose) -> Result<Texture, SceneError> {
+    let linear =
+        |picture: picture::Picture| (picture.width, picture.height, TextureData::Float(Arc::new(picture.pixels)));
+    let read = if bytes.starts_with(&picture::exr::MAGIC) {
+        picture::exr::read(bytes, purpose, &check_size).map(linear)
+    } else if bytes.starts_with(picture::radiance::MAGIC) {
+        picture::radiance::read(bytes, purpose, &check_size).map(linear)
+    } else {
+        decode(bytes, name, space)
     };
+    let (width, height, data) = read.map_err(|message| SceneError::bad(Location::file(name), message))?;
     Ok(Texture::new(name.display().to_string(), width, height, data))
 }
 
@@ -75,7 +100,7 @@ fn texels(picture: DynamicImage, space: ColorSpace) -> TextureData {
     match picture {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
             let texels = picture.into_rgba32f();
-            TextureData::Float(Arc::new(texels.pixels().map(|p| p.0.map(finite)).collect()))
+            TextureData::Float(Arc::new(texels.pixels().map(|p| p.0).collect()))
         }
         DynamicImage::ImageLuma16(_)
         | DynamicImage::ImageLumaA16(_)
@@ -106,39 +131,4 @@ fn srgb16_to_linear() -> &'static [f32] {
 /// IEC 61966-2-1, 0 to 1.
 pub(super) fn srgb_to_linear(v: f64) -> f64 {
     if v <= 0.04045 { v / 12.92 } else { libm::pow((v + 0.055) / 1.055, 2.4) }
-}
-
-/// A texture must not bring NaN or infinity into a picture: those texels are black or the largest half.
-fn finite(v: f32) -> f32 {
-    const HALF_MAX: f32 = 65_504.0;
-    if v.is_nan() {
-        return 0.0;
-    }
-    if v.is_infinite() { HALF_MAX.copysign(v) } else { v }
-}
-
-fn decode_exr(bytes: &[u8]) -> Result<(u32, u32, TextureData), String> {
-    use exr::prelude::{ReadChannels, ReadLayers, read};
-    let readable = |e: exr::error::Error| format!("cannot decode the picture: {e}");
-    // The sizes in the header come before any allocation for texels.
-    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(readable)?;
-    for header in &meta.headers {
-        check_size(header.layer_size.0 as u64, header.layer_size.1 as u64)?;
-    }
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .rgba_channels(
-            |size, _| (size.0, vec![[0.0f32; 4]; size.0 * size.1]),
-            |(width, texels), at, (r, g, b, a): (f32, f32, f32, f32)| {
-                texels[at.1 * *width + at.0] = [r, g, b, a].map(finite);
-            },
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(readable)?;
-    let size = image.layer_data.size;
-    let texels = image.layer_data.channel_data.pixels.1;
-    Ok((size.0 as u32, size.1 as u32, TextureData::Float(Arc::new(texels))))
 }
