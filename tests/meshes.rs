@@ -141,8 +141,22 @@ fn pictures_of_every_depth_and_format_become_textures() {
     };
     for name in ["BrightRingsNanInf.exr", "AllHalfValues.exr", "SquaresSwirls.exr"] {
         let texture = load_texture(&exr.join(name), ColorSpace::Srgb).unwrap_or_else(|e| panic!("{e}"));
-        let TextureData::Float(texels) = &texture.data else { panic!("{name}") };
-        assert!(texels.as_flattened().iter().all(|v| v.is_finite()), "{name}");
+        let TextureData::Float(stored) = &texture.data else { panic!("{name}") };
+        // What is no number comes as far as here, and no further: the scene that shows it holds none.
+        let file = exr.join(name).canonicalize().expect("it is there");
+        let text = format!(
+            "[camera]\neye = [0, 0, 5]\n[[object]]\nshape = \"sphere\"\nmaterial = \"m\"\n[[material]]\nname = \"m\"\n\
+             bump_map = '{}'\n",
+            file.display()
+        );
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("a.toml");
+        std::fs::write(&path, text).expect("writable");
+        let scene = gonio::scene::load::load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let TextureData::Float(shown) = &scene.textures[0].data else { panic!("{name}") };
+        assert!(shown.as_flattened().iter().all(|v| v.is_finite()), "{name}");
+        let broken = stored.as_flattened().iter().filter(|v| !v.is_finite()).count();
+        assert_eq!(scene.warnings.iter().any(|warning| warning.contains("numbers are finite")), broken > 0, "{name}");
     }
 }
 

@@ -59,6 +59,8 @@ pub struct Texture {
     /// Read as the mean over what a pixel's cone covers, from smaller copies; else at the point alone, which many samples
     /// turn into the same picture without the cone's approximations.
     pub mipmap: bool,
+    /// Some texels are not read but between others, as the ends of planes: they may be out of range where what is read is not.
+    pub extrapolated: bool,
     pub scale: [f32; 2],
     pub shear: [f32; 2],
     pub offset: [f32; 2],
@@ -79,10 +81,16 @@ impl Texture {
             wrap_v: Wrap::Repeat,
             bilinear: true,
             mipmap: false,
+            extrapolated: false,
             scale: [1.0; 2],
             shear: [0.0; 2],
             offset: [0.0; 2],
         }
+    }
+
+    /// One texel of a colour.
+    pub fn uniform(color: Rgb) -> Self {
+        Self::new("uniform", 1, 1, TextureData::Float(Arc::new(vec![[color.x, color.y, color.z, 1.0]])))
     }
 
     /// The texture of a pattern.

@@ -13,6 +13,7 @@ pub mod obj;
 mod panels;
 pub mod ply;
 mod polygon;
+mod range;
 pub mod staging;
 mod text;
 mod texture_files;
@@ -37,6 +38,16 @@ pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
 
 /// As `load`, with values for the parameters of a Mitsuba scene; other formats have none.
 pub fn load_with(path: &Path, overrides: &[Override], defines: &[(String, String)]) -> Result<Scene, SceneError> {
+    load_format(path, overrides, defines).map(finished)
+}
+
+/// The last step of all formats.
+fn finished(mut scene: Scene) -> Scene {
+    range::keep_ranges(&mut scene);
+    scene
+}
+
+fn load_format(path: &Path, overrides: &[Override], defines: &[(String, String)]) -> Result<Scene, SceneError> {
     if extension(path) == "xml" {
         let mut scene = mitsuba::load(path, defines)?;
         toml::override_film(&mut scene, overrides)?;

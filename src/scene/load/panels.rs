@@ -1,7 +1,7 @@
 //! A scene file as the pictures that it asks for.
 
 use super::toml::{self, Override};
-use super::{load_with, toml_text};
+use super::{finished, load_format, toml_text};
 use crate::scene::{Scene, SceneError};
 use std::path::{Path, PathBuf};
 
@@ -41,10 +41,11 @@ impl Panels {
 
     /// The scene of a panel, or the scene as it is without any panel's changes.
     pub fn scene(&self, panel: Option<usize>) -> Result<Scene, SceneError> {
-        match (&self.text, panel) {
+        let scene = match (&self.text, panel) {
             (Some(text), Some(panel)) => toml::panel_from_text(&self.path, text.clone(), &self.overrides, panel),
             (Some(text), None) => toml::scene_from_text(&self.path, text.clone(), &self.overrides),
-            (None, _) => load_with(&self.path, &self.overrides, &self.defines),
-        }
+            (None, _) => load_format(&self.path, &self.overrides, &self.defines),
+        };
+        scene.map(finished)
     }
 }

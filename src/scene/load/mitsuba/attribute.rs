@@ -7,7 +7,6 @@
 use super::Loader;
 use super::document::{Document, Node, Result};
 use super::object::Object;
-use super::texture::uniform;
 use crate::scene::load::ply::Attribute;
 use crate::scene::load::texture_files::intern;
 use crate::scene::{Mesh, Rgb, Texture, TextureData, TextureId, Wrap};
@@ -141,7 +140,7 @@ impl Loader<'_> {
     /// shape refers to.
     pub fn attribute_texture(&mut self, node: Node, name: &str, scale: f32) -> Result<TextureId> {
         let Some(Pictured { triangles, attributes }) = self.showing.and_then(|mesh| self.pictured.get(&mesh)) else {
-            return Ok(intern(&mut self.scene.textures, uniform(Rgb::ONE)));
+            return Ok(intern(&mut self.scene.textures, Texture::uniform(Rgb::ONE)));
         };
         let attribute = find_attribute(self.document, node, name, attributes)?;
         let grid = Grid::of(triangles.len());
@@ -160,6 +159,7 @@ impl Loader<'_> {
         let data = TextureData::Float(Arc::new(texels));
         let mut texture = Texture::new(name, grid.width(), grid.height(), data);
         (texture.wrap_u, texture.wrap_v) = (Wrap::Clamp, Wrap::Clamp);
+        texture.extrapolated = true;
         Ok(intern(&mut self.scene.textures, texture))
     }
 }
