@@ -11,6 +11,8 @@ const STEP: f64 = 5.0;
 const POINTS: u32 = 1000;
 /// Integral of y-bar in the table: a flat spectrum of 1 has luminance 1.
 const Y_INTEGRAL: f64 = 106.750_259_399_414_06;
+/// D65 in its table has this luminance: a surface that reflects all of it has luminance 1.
+const D65_LUMINANCE: f64 = 98.997_417_518_762_55;
 
 /// What kind of thing has a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,15 +43,20 @@ impl Spectrum {
         if w1 > w0 { v0 + (v1 - v0) * ((wavelength - w0) / (w1 - w0)) } else { v1 }
     }
 
-    /// The colour: integrals against the CIE 1931 observer, channels below 0 cut, those of reflectances above 1 too. No
-    /// illuminant is in them: a flat spectrum of 1 is the equal-energy white, not (1, 1, 1), for reflectances too.
-    /// Source: Mitsuba 3, `spectrum_list_to_srgb`; that reflectances are not seen under D65, as in one of its versions, is
-    /// what the picture of its Cornell box says (documentation, `variants_cbox_rgb`).
+    /// The colour: integrals against the CIE 1931 observer, channels below 0 cut, those of reflectances above 1 too.
+    /// Reflectances are seen under D65, so that what reflects all light is (1, 1, 1); light and indices of refraction are under
+    /// no illuminant, so that a flat spectrum of 1 is the equal-energy white.
+    /// Source: Mitsuba 3.9.1, `spectrum_list_to_srgb`. It takes indices in lists as if they were reflectances, but those of named
+    /// metals under no illuminant; here both are the latter.
     pub fn rgb(&self, role: Role) -> Rgb {
         let mut xyz = DVec3::ZERO;
         for i in 0..POINTS {
             let wavelength = FIRST + f64::from(i) / f64::from(POINTS - 1) * (LAST - FIRST);
-            xyz += observer(wavelength) * self.at(wavelength);
+            let light = match role {
+                Role::Reflectance => between(wavelength, |row| D65[row]) / D65_LUMINANCE,
+                Role::Emission | Role::Index => 1.0,
+            };
+            xyz += observer(wavelength) * (self.at(wavelength) * light);
         }
         xyz *= (LAST - FIRST) / f64::from(POINTS) / Y_INTEGRAL;
         let rgb = rgb_from_xyz(xyz).as_vec3();
@@ -58,13 +65,17 @@ impl Spectrum {
     }
 }
 
+/// A table's value at a wavelength within it, linear between its rows.
+fn between(wavelength: f64, row: impl Fn(usize) -> f64) -> f64 {
+    let place = (wavelength - FIRST) / STEP;
+    let first = (place as usize).min(TABLE.len() - 2);
+    row(first) + (row(first + 1) - row(first)) * (place - first as f64)
+}
+
 /// x-bar, y-bar and z-bar at a wavelength within the table.
 fn observer(wavelength: f64) -> DVec3 {
-    let place = (wavelength - FIRST) / STEP;
-    let row = (place as usize).min(TABLE.len() - 2);
-    let t = place - row as f64;
-    let mix = |k: usize| TABLE[row][k] + (TABLE[row + 1][k] - TABLE[row][k]) * t;
-    DVec3::new(mix(0), mix(1), mix(2))
+    let lane = |k: usize| between(wavelength, |row| TABLE[row][k]);
+    DVec3::new(lane(0), lane(1), lane(2))
 }
 
 /// Light that is 1 at every wavelength, a little purple next to D65.
@@ -258,6 +269,21 @@ const TABLE: [[f64; 3]; 95] = [
     [0.000001251141, 0.00000045181, 0.0],
 ];
 
+/// CIE standard illuminant D65, 360 to 830 nm by 5, 100 at 560. Source: ISO/CIE 11664-2:2022.
+#[rustfmt::skip]
+const D65: [f64; 95] = [
+    46.6383, 49.3637, 52.0891, 51.0323, 49.9755, 52.3118, 54.6482, 68.7015, 82.7549, 87.1204,
+    91.486, 92.4589, 93.4318, 90.057, 86.6823, 95.7736, 104.865, 110.936, 117.008, 117.41,
+    117.812, 116.336, 114.861, 115.392, 115.923, 112.367, 108.811, 109.082, 109.354, 108.578,
+    107.802, 106.296, 104.79, 106.239, 107.689, 106.047, 104.405, 104.225, 104.046, 102.023,
+    100.0, 98.1671, 96.3342, 96.0611, 95.788, 92.2368, 88.6856, 89.3459, 90.0062, 89.8026,
+    89.5991, 88.6489, 87.6987, 85.4936, 83.2886, 83.4939, 83.6992, 81.863, 80.0268, 80.1207,
+    80.2146, 81.2462, 82.2778, 80.281, 78.2842, 74.0027, 69.7213, 70.6652, 71.6091, 72.979,
+    74.349, 67.9765, 61.604, 65.7448, 69.8856, 72.4863, 75.087, 69.3398, 63.5927, 55.0054,
+    46.4182, 56.6118, 66.8054, 65.0941, 63.3828, 63.8434, 64.304, 61.8779, 59.4519, 55.7054,
+    51.959, 54.6998, 57.4406, 58.8765, 60.3125,
+];
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -276,8 +302,22 @@ mod tests {
     fn a_flat_spectrum_is_the_equal_energy_white() {
         // Mitsuba's own conversion of 0.78, in its Cornell box for RGB variants.
         let flat = spectrum(&[(400.0, 0.78), (700.0, 0.78)]);
-        for role in [Role::Emission, Role::Reflectance, Role::Index] {
+        for role in [Role::Emission, Role::Index] {
             close(flat.rgb(role), [0.936461, 0.740433, 0.705267], 8e-4);
+        }
+    }
+
+    #[test]
+    fn reflectances_are_seen_under_d65_as_in_mitsuba() {
+        // Mitsuba 3.9.1, scalar_rgb, `traverse` of a diffuse BSDF. The first is short of 1 by the sum's 1000 points in 999 steps.
+        for (points, expected) in [
+            (&[(360.0, 1.0), (830.0, 1.0)][..], [0.998985, 0.998874, 0.998802]),
+            (&[(400.0, 0.78), (700.0, 0.78)], [0.776367, 0.77981, 0.776029]),
+            (&[(400.0, 0.1), (500.0, 0.6), (600.0, 0.9), (700.0, 0.2)], [0.806934, 0.752263, 0.32012]),
+            (&[(300.0, 0.2), (550.0, 0.9), (900.0, 0.1)], [0.737546, 0.861101, 0.604327]),
+            (&[(400.0, 1.0), (500.0, 1.0), (500.001, 0.0), (700.0, 0.0)], [0.0, 0.0135933, 1.0]),
+        ] {
+            close(spectrum(points).rgb(Role::Reflectance), expected, 2e-5);
         }
     }
 
