@@ -359,7 +359,7 @@ fn shapes_that_have_no_surface_are_refused() {
 }
 
 #[test]
-fn missing_files_are_io_errors_that_say_who_asked() {
+fn missing_files_that_are_no_textures_are_io_errors_that_say_who_asked() {
     let io = |name: &str, text: &str| {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let file = folder.path().join(name);
@@ -368,8 +368,6 @@ fn missing_files_are_io_errors_that_say_who_asked() {
         assert!(matches!(error, SceneError::Io { .. }), "{error}");
         error.to_string()
     };
-    let texture = io("a.toml", &format!("{HEAD}[[material]]\nname = \"a\"\ntexture = \"no.png\"\n"));
-    assert!(texture.contains("a.toml:7:11: ") && texture.contains("no.png: "), "{texture}");
     let mesh = io("a.toml", "[camera]\neye = [0, 0, 5]\n[[object]]\nshape = \"mesh\"\nfile = \"no.obj\"\n");
     assert!(mesh.contains("a.toml:5:8: ") && mesh.contains("no.obj: "), "{mesh}");
     for name in ["no.toml", "no.obj", "no.ply"] {

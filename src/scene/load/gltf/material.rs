@@ -112,21 +112,26 @@ impl Maker<'_, '_> {
         self.emit(source)?;
         if let Some(normal) = &source.normal_texture {
             let info = normal_info(normal);
-            let texture = self.texture(&info, ColorSpace::Linear)?;
             let strength = if normal.scale.is_finite() { normal.scale.clamp(-100.0, 100.0) } else { 1.0 };
-            self.bind(Parameter::Normal, Channel::Rgb, strength, texture);
+            if let Some(texture) = self.texture(&info, ColorSpace::Linear)? {
+                self.bind(Parameter::Normal, Channel::Rgb, strength, texture);
+            }
         }
         Ok(())
     }
 
     /// The texture of `info`, after noting which coordinates it wants.
-    fn texture(&mut self, info: &Info, space: ColorSpace) -> Result<Texture, Failure> {
+    fn texture(&mut self, info: &Info, space: ColorSpace) -> Result<Option<Texture>, Failure> {
         let set = coordinate_set(info);
         if *self.set.get_or_insert(set) != set {
             self.notes
                 .insert("textures of one material that want different TEXCOORD sets all use the first".to_owned());
         }
         self.textures.texture(info, space, &self.place)
+    }
+
+    fn optional(&mut self, info: Option<&Info>, space: ColorSpace) -> Result<Option<Texture>, Failure> {
+        info.map_or(Ok(None), |info| self.texture(info, space))
     }
 
     fn bind(&mut self, parameter: Parameter, channel: Channel, scale: f32, texture: Texture) {
@@ -139,10 +144,10 @@ impl Maker<'_, '_> {
         if let Some(glossy) = extensions.and_then(|e| e.pbr_specular_glossiness.as_ref()) {
             let [diffuse, specular] = [&glossy.diffuse_texture, &glossy.specular_glossiness_texture];
             let opaque = self.is_opaque(diffuse.as_ref())?;
-            let read = |info: &Option<Info>, maker: &mut Self| {
-                info.as_ref().map(|info| maker.texture(info, ColorSpace::Srgb)).transpose()
-            };
-            let (diffuse, specular) = (read(diffuse, self)?, read(specular, self)?);
+            let [diffuse, specular] = [
+                self.optional(diffuse.as_ref(), ColorSpace::Srgb)?,
+                self.optional(specular.as_ref(), ColorSpace::Srgb)?,
+            ];
             return Ok(glossy::surface(glossy, diffuse, specular, opaque));
         }
         let pbr = &source.pbr_metallic_roughness;
@@ -155,10 +160,10 @@ impl Maker<'_, '_> {
             base: clamp_color([r, g, b]),
             alpha: clamp01(alpha),
             opaque: self.is_opaque(base)?,
-            base_texture: base.map(|info| self.texture(info, ColorSpace::Srgb)).transpose()?,
+            base_texture: self.optional(base, ColorSpace::Srgb)?,
             metallic: clamp01(pbr.metallic_factor.0),
             roughness: clamp01(pbr.roughness_factor.0),
-            texture: rough.map(|info| self.texture(info, ColorSpace::Linear)).transpose()?,
+            texture: self.optional(rough, ColorSpace::Linear)?,
             eta: if eta >= 1.0 { eta.min(5.0) } else { 5.0 },
         })
     }
@@ -210,8 +215,9 @@ impl Maker<'_, '_> {
         let strength = if strength > 0.0 { strength.min(1e6) } else { 0.0 };
         self.material.emission = clamp_color(source.emissive_factor.0) * strength;
         if let (Some(info), true) = (&source.emissive_texture, self.material.emission != Rgb::ZERO) {
-            let texture = self.texture(info, ColorSpace::Srgb)?;
-            self.bind(Parameter::Emission, Channel::Rgb, 1.0, texture);
+            if let Some(texture) = self.texture(info, ColorSpace::Srgb)? {
+                self.bind(Parameter::Emission, Channel::Rgb, 1.0, texture);
+            }
         }
         Ok(())
     }

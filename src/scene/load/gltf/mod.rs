@@ -53,6 +53,9 @@ const DISPENSABLE: [&str; 9] = [
 /// Vertices of all meshes together: a file may name one array many times.
 const VERTICES_MAX: usize = 1 << 27;
 
+/// Nodes that fail, at most, before reading ends.
+const FAILURES_MAX: usize = 32;
+
 /// Loads the file as a scene. `load::load` stages what it has no camera or light for.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
     let bytes = std::fs::read(path).map_err(|source| SceneError::Io { location: Location::file(path), source })?;
@@ -80,6 +83,8 @@ enum Failure {
     },
     /// Of another format.
     Other(Box<SceneError>),
+    /// At least one.
+    Several(Vec<Failure>),
 }
 
 impl Failure {
@@ -99,6 +104,7 @@ impl Failure {
             }
             Self::Io { file, source } => SceneError::Io { location: Location::file(file), source },
             Self::Other(error) => *error,
+            Self::Several(failures) => SceneError::all(failures.into_iter().map(|failure| failure.at(path)).collect()),
         }
     }
 }
@@ -142,8 +148,11 @@ fn read(bytes: &[u8], path: &Path) -> Result<Scene, Failure> {
         vertices: 0,
     };
     let nodes = node::flatten(&root)?;
-    for (index, world) in nodes {
-        loader.add_node(index, world)?;
+    // All that is wrong is told at once, as far as anybody reads it.
+    let failures = nodes.into_iter().filter_map(|(index, world)| loader.add_node(index, world).err());
+    let failures: Vec<Failure> = failures.take(FAILURES_MAX).collect();
+    if !failures.is_empty() {
+        return Err(Failure::Several(failures));
     }
     loader.add_loose_meshes()?;
     if !root.animations.is_empty() {
@@ -264,6 +273,7 @@ impl Loader<'_> {
 
     fn finish(self) -> Scene {
         let mut scene = self.scene;
+        scene.warnings.extend(self.textures.warnings);
         scene.warnings.extend(self.notes);
         if !scene.lights.is_empty() {
             // What glTF viewers light with an environment would be black in our shadows.

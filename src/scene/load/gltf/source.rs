@@ -76,7 +76,14 @@ impl<'a> Buffers<'a> {
             }
             Ok(data)
         };
-        Ok(Self { data: root.buffers.iter().enumerate().map(read).collect::<Result<_, _>>()? })
+        let (mut data, mut failures) = (Vec::new(), Vec::new());
+        for buffer in root.buffers.iter().enumerate() {
+            match read(buffer) {
+                Ok(bytes) => data.push(bytes),
+                Err(failure) => failures.push(failure),
+            }
+        }
+        if failures.is_empty() { Ok(Self { data }) } else { Err(Failure::Several(failures)) }
     }
 
     /// The bytes of a buffer view, and its stride if it has one. `place` refers to it.

@@ -3,6 +3,7 @@
 use super::Failure;
 use super::source::{Buffers, file_of, read_uri};
 use crate::scene::load::image::{ColorSpace, texture_from_bytes};
+use crate::scene::load::texture_files::or_absent;
 use crate::scene::{SceneError, Texture, TextureData, Wrap};
 use gltf::json::extensions::texture::TextureTransform;
 use gltf::json::texture::{Info, MagFilter, WrappingMode};
@@ -18,23 +19,26 @@ pub(super) struct Textures<'a> {
     pub folder: &'a Path,
     /// The glTF itself, for messages.
     pub file: &'a Path,
-    pictures: HashMap<(usize, bool), Texture>,
+    /// None: its file is not there.
+    pictures: HashMap<(usize, bool), Option<Texture>>,
     opaque: HashMap<usize, bool>,
+    /// What the scene goes without.
+    pub warnings: Vec<String>,
 }
 
 impl<'a> Textures<'a> {
     pub fn new(root: &'a Root, buffers: &'a Buffers<'a>, folder: &'a Path, file: &'a Path) -> Self {
-        Self { root, buffers, folder, file, pictures: HashMap::new(), opaque: HashMap::new() }
+        Self { root, buffers, folder, file, pictures: HashMap::new(), opaque: HashMap::new(), warnings: Vec::new() }
     }
 
-    /// The texture that `info` asks for, as it is to be laid on.
-    pub fn texture(&mut self, info: &Info, space: ColorSpace, place: &str) -> Result<Texture, Failure> {
+    /// The texture that `info` asks for, as it is to be laid on; none if its file is not there.
+    pub fn texture(&mut self, info: &Info, space: ColorSpace, place: &str) -> Result<Option<Texture>, Failure> {
         let (image, wraps, nearest) = self.resolve(info, place)?;
-        let mut texture = self.picture(image, space)?.clone();
+        let Some(mut texture) = self.picture(image, space)?.cloned() else { return Ok(None) };
         [texture.wrap_u, texture.wrap_v] = wraps;
         texture.bilinear = !nearest;
         lay_on(&mut texture, info);
-        Ok(texture)
+        Ok(Some(texture))
     }
 
     /// Whether no texel of the picture lets anything through.
@@ -43,10 +47,12 @@ impl<'a> Textures<'a> {
         if let Some(opaque) = self.opaque.get(&image) {
             return Ok(*opaque);
         }
-        let opaque = match &self.picture(image, ColorSpace::Srgb)?.data {
-            TextureData::Srgb8(texels) | TextureData::Linear8(texels) => texels.iter().all(|texel| texel[3] == 255),
-            TextureData::Float(texels) => texels.iter().all(|texel| texel[3] >= 1.0),
-            TextureData::Pattern(_) => true,
+        let opaque = match self.picture(image, ColorSpace::Srgb)?.map(|picture| &picture.data) {
+            Some(TextureData::Srgb8(texels) | TextureData::Linear8(texels)) => {
+                texels.iter().all(|texel| texel[3] == 255)
+            }
+            Some(TextureData::Float(texels)) => texels.iter().all(|texel| texel[3] >= 1.0),
+            Some(TextureData::Pattern(_)) | None => true,
         };
         self.opaque.insert(image, opaque);
         Ok(opaque)
@@ -59,13 +65,13 @@ impl<'a> Textures<'a> {
             let sum: u64 = texels.iter().map(|texel| u64::from(texel[0])).sum();
             sum as f64 / (255.0 * texels.len().max(1) as f64)
         };
-        Ok(match &self.picture(image, ColorSpace::Linear)?.data {
-            TextureData::Srgb8(texels) | TextureData::Linear8(texels) => mean(texels) as f32,
-            TextureData::Float(texels) => {
+        Ok(match self.picture(image, ColorSpace::Linear)?.map(|picture| &picture.data) {
+            Some(TextureData::Srgb8(texels) | TextureData::Linear8(texels)) => mean(texels) as f32,
+            Some(TextureData::Float(texels)) => {
                 let sum: f64 = texels.iter().map(|texel| f64::from(texel[0])).sum();
                 (sum / texels.len().max(1) as f64) as f32
             }
-            TextureData::Pattern(_) => 1.0,
+            Some(TextureData::Pattern(_)) | None => 1.0,
         })
     }
 
@@ -102,13 +108,16 @@ impl<'a> Textures<'a> {
         Ok((image, [wrap(&sampler.wrap_s), wrap(&sampler.wrap_t)], nearest))
     }
 
-    fn picture(&mut self, index: usize, space: ColorSpace) -> Result<&Texture, Failure> {
+    /// The picture as it lies in its file; none, with a warning, if the file is not there.
+    fn picture(&mut self, index: usize, space: ColorSpace) -> Result<Option<&Texture>, Failure> {
         let key = (index, space == ColorSpace::Srgb);
         if !self.pictures.contains_key(&key) {
-            let picture = self.read(index, space)?;
+            let read = self.read(index, space).map_err(|failure| failure.at(self.file));
+            let asked = format!("{}: images[{index}]", self.file.display());
+            let picture = or_absent(read, asked, &mut self.warnings).map_err(|e| Failure::Other(Box::new(e)))?;
             self.pictures.insert(key, picture);
         }
-        Ok(&self.pictures[&key])
+        Ok(self.pictures[&key].as_ref())
     }
 
     fn read(&self, index: usize, space: ColorSpace) -> Result<Texture, Failure> {

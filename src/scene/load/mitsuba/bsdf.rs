@@ -156,8 +156,8 @@ impl Loader<'_> {
                 };
                 let scale =
                     if kind == "bumpmap" { object.float_in("scale", -1e6, 1e6)?.unwrap_or(1.0) as f32 } else { 1.0 };
-                let texture = self.texture(source)?;
-                inner.textures.push(TextureBinding { parameter, texture, channel: Channel::Rgb, scale });
+                let bind = |texture| TextureBinding { parameter, texture, channel: Channel::Rgb, scale };
+                inner.textures.extend(self.texture(source)?.map(bind));
                 return Ok(inner);
             }
         }
@@ -199,7 +199,8 @@ impl Loader<'_> {
         };
         if self.document.tag(node) == "texture"
             && self.showing.is_none()
-            && let Varying::Attribute { scale, .. } = self.textures.read(self.document, node, false, &mut self.scene)?
+            && let Some(Varying::Attribute { scale, .. }) =
+                self.textures.read(self.document, node, false, &mut self.scene)?
         {
             // As vertex colours, which multiply the colour of every material.
             material.color = Rgb::splat(scale);
@@ -222,20 +223,22 @@ impl Loader<'_> {
         if self.document.tag(node) != "texture" {
             return super::color::color(self.document, node, Role::Reflectance);
         }
-        let texture = self.texture(node)?;
+        let Some(texture) = self.texture(node)? else { return Ok(Rgb::splat(default)) };
         material.textures.push(TextureBinding { parameter, texture, channel: Channel::Rgb, scale: 1.0 });
         Ok(Rgb::ONE)
     }
 
-    /// A texture of colours, or of the normals or heights of a map.
-    pub fn texture(&mut self, node: Node) -> Result<TextureId> {
+    /// A texture of colours, or of the normals or heights of a map; none, with a warning, if its file is not there: then the
+    /// property is as if it had not been written.
+    pub fn texture(&mut self, node: Node) -> Result<Option<TextureId>> {
         self.texture_of(node, false)
     }
 
-    fn texture_of(&mut self, node: Node, number: bool) -> Result<TextureId> {
+    fn texture_of(&mut self, node: Node, number: bool) -> Result<Option<TextureId>> {
         match self.textures.read(self.document, node, number, &mut self.scene)? {
-            Varying::Texture(texture) => Ok(texture),
-            Varying::Attribute { name, scale } => self.attribute_texture(node, &name, scale),
+            None => Ok(None),
+            Some(Varying::Texture(texture)) => Ok(Some(texture)),
+            Some(Varying::Attribute { name, scale }) => self.attribute_texture(node, &name, scale).map(Some),
         }
     }
 
@@ -250,7 +253,7 @@ impl Loader<'_> {
     ) -> Result<f32> {
         let Some(node) = object.property(name) else { return Ok(default as f32) };
         if self.document.tag(node) == "texture" {
-            let texture = self.texture_of(node, true)?;
+            let Some(texture) = self.texture_of(node, true)? else { return Ok(default as f32) };
             let texture = self.textures.grey(texture, &mut self.scene);
             material.textures.push(TextureBinding { parameter, texture, channel: Channel::R, scale: 1.0 });
             return Ok(1.0);

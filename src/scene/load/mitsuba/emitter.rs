@@ -36,8 +36,9 @@ impl Loader<'_> {
         material.emission = Rgb::ONE;
         match object.property("radiance") {
             Some(node) if self.document.tag(node) == "texture" => {
-                let (texture, parameter) = (self.texture(node)?, Parameter::Emission);
-                material.textures.push(TextureBinding { parameter, texture, channel: Channel::Rgb, scale: 1.0 });
+                let parameter = Parameter::Emission;
+                let bind = |texture| TextureBinding { parameter, texture, channel: Channel::Rgb, scale: 1.0 };
+                material.textures.extend(self.texture(node)?.map(bind));
             }
             Some(node) => material.emission = super::color::color(self.document, node, Role::Emission)?,
             None => {}
@@ -73,16 +74,19 @@ impl Loader<'_> {
             }
             "envmap" => {
                 self.claim_surroundings(&object)?;
-                let Some(file) = object.property("filename") else { return object.required("filename", None) };
-                let mut texture = self.textures.picture(&self.document.find_file(file, "value")?, ColorSpace::Srgb)?;
+                let scale = Rgb::splat(object.float_in("scale", 0.0, 1e12)?.unwrap_or(1.0) as f32);
+                let read = self.textures.picture(&object, ColorSpace::Srgb, &mut self.scene.warnings)?;
+                let Some(mut texture) = read else {
+                    self.scene.background = Background::flat(scale);
+                    return Ok(());
+                };
                 // The rows of Mitsuba's pictures lie from pole to pole, ours have their middles half a row inside.
                 let rows = texture.height as f32;
                 (texture.scale[1], texture.offset[1]) = ((rows - 1.0) / rows, 0.5 / rows);
                 texture.wrap_v = Wrap::Clamp;
-                let scale = object.float_in("scale", 0.0, 1e12)?.unwrap_or(1.0);
                 self.scene.background = Background::Image(Environment {
                     texture: intern(&mut self.scene.textures, texture),
-                    scale: Rgb::splat(scale as f32),
+                    scale,
                     to_world: object.transform("to_world")?,
                 });
                 Ok(())
@@ -106,7 +110,7 @@ impl Loader<'_> {
                     return Err(object.bad("beam_width", "\"beam_width\" is at most \"cutoff_angle\""));
                 }
                 let texture = match object.property("texture") {
-                    Some(node) if self.document.tag(node) == "texture" => Some(self.texture(node)?),
+                    Some(node) if self.document.tag(node) == "texture" => self.texture(node)?,
                     Some(_) => return Err(object.bad("texture", "the \"texture\" of a spot is a <texture>")),
                     None => None,
                 };
@@ -120,13 +124,11 @@ impl Loader<'_> {
             "projector" => {
                 let place = object.transform("to_world")?.0;
                 let Some(picture) = object.property("irradiance") else { return object.required("irradiance", None) };
-                let texture = match self.document.tag(picture) {
-                    "texture" => self.texture(picture)?,
-                    _ => {
-                        let color = super::color::color(self.document, picture, Role::Emission)?;
-                        intern(&mut self.scene.textures, super::texture::uniform(color))
-                    }
+                let (texture, color) = match self.document.tag(picture) {
+                    "texture" => (self.texture(picture)?, Rgb::ONE),
+                    _ => (None, super::color::color(self.document, picture, Role::Emission)?),
                 };
+                let texture = texture.unwrap_or_else(|| intern(&mut self.scene.textures, Texture::uniform(color)));
                 let Texture { width, height, .. } = self.scene.textures[texture.0 as usize];
                 let aspect = f64::from(width) / f64::from(height);
                 let tangent_y = libm::tan(super::sensor::read_fov(&object, aspect)? / 2.0);

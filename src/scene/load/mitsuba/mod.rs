@@ -79,8 +79,11 @@ pub fn load(path: &Path, defines: &[(String, String)]) -> Result<Scene, SceneErr
         environment: None,
         integrator: None,
     };
-    for node in document.children(document.root) {
-        loader.read(*node)?;
+    // All that is wrong is told at once; what one element lacks no other needs to know.
+    let read = |node: &Node| loader.read(*node).err();
+    let errors: Vec<SceneError> = document.children(document.root).iter().filter_map(read).collect();
+    if !errors.is_empty() {
+        return Err(SceneError::all(errors));
     }
     loader.finish()
 }

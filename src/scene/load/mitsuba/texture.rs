@@ -6,9 +6,8 @@ use super::document::{Document, Node, Result};
 use super::object::Object;
 use super::spectrum::Role;
 use crate::scene::load::image::ColorSpace;
-use crate::scene::load::texture_files::{TextureFiles, intern};
+use crate::scene::load::texture_files::{TextureFiles, intern, or_absent};
 use crate::scene::{Rgb, Scene, Texture, TextureData, TextureId, Wrap};
-use std::path::Path;
 use std::sync::Arc;
 
 /// What varies over a surface.
@@ -23,30 +22,53 @@ pub enum Varying {
 }
 
 /// Reads textures into a scene; equal ones once.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Textures {
     files: TextureFiles,
 }
 
+impl Default for Textures {
+    fn default() -> Self {
+        Self { files: TextureFiles::of_mitsuba() }
+    }
+}
+
 impl Textures {
-    /// The texture in `node`. `number`: it stands for one, not for a colour.
-    pub fn read(&mut self, document: &Document, node: Node, number: bool, scene: &mut Scene) -> Result<Varying> {
+    /// The texture in `node`; none, with a warning, if its file is not there. `number`: it stands for one, not for a colour.
+    pub fn read(
+        &mut self,
+        document: &Document,
+        node: Node,
+        number: bool,
+        scene: &mut Scene,
+    ) -> Result<Option<Varying>> {
         let object = Object::open(document, node)?;
         let texture = match object.plugin.name {
-            "bitmap" => self.bitmap(&object)?,
+            "bitmap" => match self.bitmap(&object, &mut scene.warnings)? {
+                Some(texture) => texture,
+                None => return Ok(None),
+            },
             "checkerboard" => checkerboard(&object, number)?,
+            "rawconstant" => raw_constant(&object)?,
             // mesh_attribute
             _ => {
                 let scale = object.float_in("scale", 0.0, 1e6)?.unwrap_or(1.0) as f32;
-                return Ok(Varying::Attribute { name: super::attribute::name_of(&object)?, scale });
+                return Ok(Some(Varying::Attribute { name: super::attribute::name_of(&object)?, scale }));
             }
         };
-        Ok(Varying::Texture(intern(&mut scene.textures, texture)))
+        Ok(Some(Varying::Texture(intern(&mut scene.textures, texture))))
     }
 
-    /// A picture as it lies in its file.
-    pub fn picture(&mut self, path: &Path, space: ColorSpace) -> Result<Texture> {
-        self.files.load(path, space)
+    /// The picture that `filename` names, as it lies in its file; none, with a warning, if it is not there.
+    pub fn picture(
+        &mut self,
+        object: &Object,
+        space: ColorSpace,
+        warnings: &mut Vec<String>,
+    ) -> Result<Option<Texture>> {
+        let Some(node) = object.property("filename") else { return object.required("filename", None) };
+        let read = object.document.find_file(node, "value").and_then(|path| self.files.load(&path, space));
+        or_absent(read, object.document.location_of(node), warnings)
     }
 
     /// The texture with its luminance in every channel: what a number takes from a coloured picture.
@@ -67,23 +89,26 @@ impl Textures {
         intern(&mut scene.textures, grey)
     }
 
-    fn bitmap(&mut self, object: &Object) -> Result<Texture> {
-        let Some(node) = object.property("filename") else { return object.required("filename", None) };
-        let raw = object.boolean("raw")?.unwrap_or(false);
-        let path = object.document.find_file(node, "value")?;
-        let mut texture = self.picture(&path, if raw { ColorSpace::Linear } else { ColorSpace::Srgb })?;
+    fn bitmap(&mut self, object: &Object, warnings: &mut Vec<String>) -> Result<Option<Texture>> {
+        let space = if object.boolean("raw")?.unwrap_or(false) { ColorSpace::Linear } else { ColorSpace::Srgb };
+        let Some(mut texture) = self.picture(object, space, warnings)? else { return Ok(None) };
         texture.bilinear = object.choice("filter_type", &[("bilinear", true), ("nearest", false)])?.unwrap_or(true);
         let modes = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
         let wrap = object.choice("wrap_mode", &modes)?.unwrap_or(Wrap::Repeat);
         (texture.wrap_u, texture.wrap_v) = (wrap, wrap);
         place(&mut texture, object)?;
-        Ok(texture)
+        Ok(Some(texture))
     }
 }
 
-/// One texel of a colour.
-pub fn uniform(color: Rgb) -> Texture {
-    Texture::new("uniform", 1, 1, TextureData::Float(Arc::new(vec![[color.x, color.y, color.z, 1.0]])))
+/// One number for all channels, or three.
+fn raw_constant(object: &Object) -> Result<Texture> {
+    let Some(node) = object.property("value") else { return object.required("value", None) };
+    let value = match object.document.tag(node) {
+        "vector" | "point" => object.vector("value")?.map(|v| v.as_vec3()),
+        _ => object.float("value")?.map(|v| Rgb::splat(v as f32)),
+    };
+    Ok(Texture { name: "rawconstant".to_owned(), ..Texture::uniform(value.unwrap_or_default()) })
 }
 
 /// Of every texel; none of a pattern, which no scene of Mitsuba's has.

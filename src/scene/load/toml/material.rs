@@ -9,8 +9,8 @@ use super::reader::{Reader, Result, in_range};
 use super::table::Tables;
 use super::texture::Textures;
 use crate::scene::{
-    Distribution, Fresnel, Lobe, Masking, Material, MaterialId, Model, Parameter, Principled, Rgb, Transparency,
-    WardNormalisation,
+    Distribution, Fresnel, Lobe, Masking, Material, MaterialId, Model, Parameter, Principled, Rgb, TextureBinding,
+    Transparency, WardNormalisation,
 };
 
 /// All materials of the document, and their names.
@@ -80,8 +80,8 @@ fn read_material(
 ) -> Result<Material> {
     let model_name = table.choice("model", MODELS)?.unwrap_or("lambert");
     table.warn_unused("model", model_name, warnings);
-    let model = read_model(table, model_name, tables)?;
-    let textures = textures.read(table)?;
+    let textures = textures.read(table);
+    let model = read_model(table, model_name, &textures, tables)?;
     let varies = |parameter| textures.iter().any(|binding| binding.parameter == parameter);
     let (k_d, k_s) = read_weights(table, &model)?;
     Ok(Material {
@@ -104,7 +104,7 @@ fn read_material(
     })
 }
 
-fn read_model(table: &Reader, name: &str, tables: &mut Tables) -> Result<Model> {
+fn read_model(table: &Reader, name: &str, textures: &[TextureBinding], tables: &mut Tables) -> Result<Model> {
     let exponent = table.float("exponent")?.unwrap_or(32.0);
     let normalisation = read_normalisation(table, name)?;
     Ok(match name {
@@ -122,6 +122,13 @@ fn read_model(table: &Reader, name: &str, tables: &mut Tables) -> Result<Model> 
         }
         "emissive" => Model::Emissive,
         "lambert" => Model::Lambert,
+        "principled" => Model::Principled(read_principled(table, textures)?),
+        // The names are looked up once all are known.
+        "blend" => {
+            let varies = textures.iter().any(|binding| binding.parameter == Parameter::Weight);
+            let weight = table.float("weight")?.unwrap_or(if varies { 1.0 } else { 0.5 });
+            Model::Blend { weight, a: MaterialId(0), b: MaterialId(0) }
+        }
         _ => read_rough_model(table, name, exponent, normalisation, tables)?,
     })
 }
@@ -170,14 +177,8 @@ fn read_rough_model(
         "thin-dielectric" => Model::ThinDielectric { eta: eta()? },
         "plastic" => Model::Plastic { eta: eta()?, nonlinear },
         "rough-plastic" => Model::RoughPlastic { distribution, alpha: alpha_u, eta: eta()?, nonlinear },
-        "principled" => Model::Principled(read_principled(table)?),
         "measured" => Model::Measured { table: tables.read(table)? },
         "null" => Model::Null,
-        // The names are looked up once all are known.
-        "blend" => {
-            let weight = table.float("weight")?.unwrap_or(if table.has("weight_texture") { 1.0 } else { 0.5 });
-            Model::Blend { weight, a: MaterialId(0), b: MaterialId(0) }
-        }
         _ => Model::Lambert,
     })
 }
@@ -206,24 +207,24 @@ fn read_metal(table: &Reader) -> Result<Fresnel> {
     }
 }
 
-fn read_principled(table: &Reader) -> Result<Principled> {
+fn read_principled(table: &Reader, textures: &[TextureBinding]) -> Result<Principled> {
     // What a texture varies is 1 unless given.
-    let part = |key: &str| -> Result<f32> {
-        let varies = table.has(&format!("{key}_texture"));
+    let part = |key: &str, parameter: Parameter| -> Result<f32> {
+        let varies = textures.iter().any(|binding| binding.parameter == parameter);
         Ok(table.float(key)?.unwrap_or(if varies { 1.0 } else { 0.0 }))
     };
     Ok(Principled {
         roughness: table.float("roughness")?.unwrap_or(0.5),
-        anisotropic: part("anisotropic")?,
-        metallic: part("metallic")?,
-        spec_trans: part("spec_trans")?,
+        anisotropic: part("anisotropic", Parameter::Anisotropic)?,
+        metallic: part("metallic", Parameter::Metallic)?,
+        spec_trans: part("spec_trans", Parameter::SpecTrans)?,
         eta: read_eta(table)?,
-        spec_tint: part("spec_tint")?,
-        sheen: part("sheen")?,
-        sheen_tint: part("sheen_tint")?,
-        flatness: part("flatness")?,
-        clearcoat: part("clearcoat")?,
-        clearcoat_gloss: part("clearcoat_gloss")?,
+        spec_tint: part("spec_tint", Parameter::SpecTint)?,
+        sheen: part("sheen", Parameter::Sheen)?,
+        sheen_tint: part("sheen_tint", Parameter::SheenTint)?,
+        flatness: part("flatness", Parameter::Flatness)?,
+        clearcoat: part("clearcoat", Parameter::Clearcoat)?,
+        clearcoat_gloss: part("clearcoat_gloss", Parameter::ClearcoatGloss)?,
     })
 }
 

@@ -64,6 +64,7 @@ fn read_scene(document: &Document) -> Result<Scene, SceneError> {
     let mut tables = table::Tables::default();
     let (materials, names) = material::read_materials(&root, &mut textures, &mut tables, &mut scene.warnings)?;
     (scene.materials, scene.textures, scene.tables) = (materials, textures.list, tables.list);
+    scene.warnings.extend(textures.warnings);
     root.attempt(|| object::read_objects(&root, &names, &mut scene));
     scene.lights = light::read_lights(&root, &lights, &mut scene.warnings)?;
     warn_dark(&mut scene);

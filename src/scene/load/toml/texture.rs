@@ -5,7 +5,7 @@ use super::keys::Range;
 use super::material_format::TEXTURE;
 use super::reader::{Reader, Result};
 use crate::scene::load::image::ColorSpace;
-use crate::scene::load::texture_files::{TextureFiles, intern};
+use crate::scene::load::texture_files::{TextureFiles, intern, or_absent};
 use crate::scene::{
     Channel, Parameter, Pattern, PatternKind, Rgb, SceneError, Texture, TextureBinding, TextureId, Wrap,
 };
@@ -39,24 +39,29 @@ const KEYS: &[(&str, Parameter)] = &[
 pub struct Textures {
     pub list: Vec<Texture>,
     files: TextureFiles,
+    /// What the scene goes without.
+    pub warnings: Vec<String>,
 }
 
 impl Textures {
-    /// All textures that the keys of `material` ask for.
-    pub fn read(&mut self, material: &Reader) -> Result<Vec<TextureBinding>> {
+    /// All textures that the keys of `material` ask for; a file that is not there is left out, as if its key had not been written.
+    pub fn read(&mut self, material: &Reader) -> Vec<TextureBinding> {
         let mut bindings = Vec::new();
         for &(key, parameter) in KEYS {
             if let Some(node) = material.node(key) {
-                bindings.push(self.read_binding(material, key, node, parameter)?);
+                let binding = material.attempt(|| self.read_binding(material, key, node, parameter));
+                bindings.extend(binding.flatten());
             }
         }
-        Ok(bindings)
+        bindings
     }
 
-    /// The picture that the key `image` of the background asks for: around the scene once, from pole to pole.
+    /// The picture that the key `image` of the background asks for: around the scene once, from pole to pole. A file that is
+    /// not there is a white one, as `scale` is all that is known of the light.
     pub fn read_environment(&mut self, background: &Reader) -> Result<Option<TextureId>> {
         let Some(file) = background.text("image")? else { return Ok(None) };
         let texture = self.load(background, "image", file, ColorSpace::Srgb)?;
+        let texture = texture.unwrap_or_else(|| Texture::uniform(Rgb::ONE));
         Ok(Some(intern(&mut self.list, Texture { wrap_v: Wrap::Clamp, ..texture })))
     }
 
@@ -66,7 +71,7 @@ impl Textures {
         key: &str,
         node: &Node,
         parameter: Parameter,
-    ) -> Result<TextureBinding> {
+    ) -> Result<Option<TextureBinding>> {
         // What is no colour is stored as it is.
         let is_color = matches!(parameter, Parameter::Color | Parameter::SpecularColor | Parameter::Emission);
         let space = if is_color { ColorSpace::Srgb } else { ColorSpace::Linear };
@@ -82,20 +87,23 @@ impl Textures {
             }
             _ => return Err(material.mismatch(key, node)),
         };
+        let Some(texture) = texture else { return Ok(None) };
         let texture = intern(&mut self.list, texture);
-        Ok(TextureBinding { parameter, texture, channel, scale: scale.unwrap_or(1.0) })
+        Ok(Some(TextureBinding { parameter, texture, channel, scale: scale.unwrap_or(1.0) }))
     }
 
-    fn read_table(&mut self, table: &Reader, space: ColorSpace) -> Result<Texture> {
+    /// None where its file is not there.
+    fn read_table(&mut self, table: &Reader, space: ColorSpace) -> Result<Option<Texture>> {
         table.exclusive("file", "pattern")?;
         let chosen = table.choice("colorspace", &[("srgb", ColorSpace::Srgb), ("linear", ColorSpace::Linear)])?;
-        let mut texture = match read_pattern(table)? {
-            Some(pattern) => Texture::pattern("pattern", pattern),
+        let read = match read_pattern(table)? {
+            Some(pattern) => Some(Texture::pattern("pattern", pattern)),
             None => {
                 let file = table.required("file", table.text("file")?)?;
                 self.load(table, "file", file, chosen.unwrap_or(space))?
             }
         };
+        let Some(mut texture) = read else { return Ok(None) };
         if let Some(bilinear) = table.choice("filter", &[("bilinear", true), ("nearest", false)])? {
             texture.bilinear = bilinear;
         }
@@ -112,11 +120,13 @@ impl Textures {
         if let Some(offset) = table.number_or_numbers::<2>("offset", any)? {
             texture.offset = offset.map(|number| number as f32);
         }
-        Ok(texture)
+        Ok(Some(texture))
     }
 
-    fn load(&mut self, table: &Reader, key: &str, file: &str, space: ColorSpace) -> Result<Texture> {
-        self.files.load(&beside(table.document, file), space).map_err(|error| refer(table, key, error))
+    fn load(&mut self, table: &Reader, key: &str, file: &str, space: ColorSpace) -> Result<Option<Texture>> {
+        let read = self.files.load(&beside(table.document, file), space);
+        let place = table.node(key).map_or(table.place, |node| node.place);
+        or_absent(read, table.document.location(place), &mut self.warnings)
     }
 }
 
