@@ -1,7 +1,7 @@
 //! One object of a scene: an element with a plug-in type, all of whose properties are known.
 
 use super::document::{Document, Node, Result, hint};
-use super::plugin::{PLUGINS, Plugin};
+use super::plugin::{PLUGINS, Plugin, REFUSED};
 use super::transform::transform;
 use crate::scene::load::toml::LARGEST;
 use crate::scene::{SceneError, Transform};
@@ -60,6 +60,11 @@ impl<'a> Object<'a> {
         let of_class = || PLUGINS.iter().filter(|plugin| plugin.class == class);
         // Mitsuba up to 3.6 took capitals for small letters.
         let Some(plugin) = of_class().find(|plugin| plugin.name.eq_ignore_ascii_case(name)) else {
+            if let Some((.., why)) =
+                REFUSED.iter().find(|(of, known, _)| *of == class && known.eq_ignore_ascii_case(name))
+            {
+                return Err(document.bad_value(node, "type", format!("the {class} {name:?} is not supported: {why}")));
+            }
             let names: Vec<&str> = of_class().map(|plugin| plugin.name).collect();
             let message = match names.is_empty() {
                 true => format!("<{class}> is not supported: {}", super::NO_MEDIA),

@@ -15,6 +15,8 @@ pub enum Kind {
     Texture,
     /// `<float>` or a `<texture>`.
     Scalar,
+    /// `<float>`, `<point>` or `<vector>`.
+    Numbers,
     /// `<float>` or the name of a material: index of refraction.
     Index,
     Transform,
@@ -32,6 +34,7 @@ impl Kind {
             Self::Color => &["rgb", "spectrum", "float", "integer"],
             Self::Texture => &["rgb", "spectrum", "float", "integer", "texture"],
             Self::Scalar => &["float", "integer", "texture"],
+            Self::Numbers => &["float", "integer", "point", "vector"],
             Self::Index => &["float", "integer", "string"],
             Self::Transform => &["transform"],
         }
@@ -47,6 +50,7 @@ impl Kind {
             Self::Color => "colour",
             Self::Texture => "colour or texture",
             Self::Scalar => "number or texture",
+            Self::Numbers => "number or three",
             Self::Index => "number or name",
             Self::Transform => "transform",
         }
@@ -100,7 +104,7 @@ const fn plugin(
     Plugin { class, name, properties, nested }
 }
 
-use Kind::{Boolean, Color, Float, Index, Integer, Scalar, Text, Texture, Transform, Vector};
+use Kind::{Boolean, Color, Float, Index, Integer, Numbers, Scalar, Text, Texture, Transform, Vector};
 
 const TO_WORLD: &[Property] = &[p("to_world", Transform, "identity")];
 const SHAPE: &[Property] = &[
@@ -316,6 +320,7 @@ pub const PLUGINS: &[Plugin] = &[
         &[&[p("color0", Color, "0.4"), p("color1", Color, "0.2"), p("to_uv", Transform, "identity")]],
         &[],
     ),
+    plugin("texture", "rawconstant", &[&[p("value", Numbers, "")]], &[]),
     plugin("texture", "mesh_attribute", &[&[p("name", Text, "vertex_color"), p("scale", Float, "1")]], &[]),
     plugin("spectrum", "uniform", &[&[p("value", Float, "1")]], &[]),
     plugin(
@@ -333,6 +338,12 @@ pub const PLUGINS: &[Plugin] = &[
     ),
     plugin("spectrum", "d65", &[&[p("scale", Float, "1"), p("color", Color, "1")]], &[]),
     plugin("spectrum", "srgb", &[&[p("color", Color, "")]], &[]),
+];
+
+/// Plug-ins of Mitsuba 3.9.1 that are not read, and why: (element, type, reason).
+pub const REFUSED: &[(&str, &str, &str)] = &[
+    ("bsdf", "principledthin", "gonio has no thin surface that scatters light to both of its sides"),
+    ("shape", "sdfgrid", "gonio traces triangles and spheres, no distance fields; a mesh of its surface is read"),
 ];
 
 /// The tables of scenes/README.md: (class, rows).
