@@ -17,6 +17,7 @@ mod progress;
 pub mod render;
 mod setup;
 mod sheet;
+mod strict;
 mod team;
 pub mod verify;
 
@@ -46,6 +47,9 @@ struct Cli {
     /// Say nothing on stderr but errors.
     #[arg(short, long, global = true)]
     quiet: bool,
+    /// Refuse a scene that loading or baking warns of (exit code 65).
+    #[arg(long, global = true)]
+    strict: bool,
 }
 
 #[derive(Subcommand)]
@@ -99,6 +103,7 @@ pub fn main() -> ExitCode {
             level => writeln!(out, "{}: {}", level.as_str().to_lowercase(), record.args()),
         })
         .init();
+    strict::demand(cli.strict);
     let result = match &cli.command {
         Command::Render(args) => render::run(args, cli.quiet),
         Command::Merge(args) => merge::run(args),
@@ -190,7 +195,7 @@ fn exit_code(error: &anyhow::Error) -> u8 {
         if let Some(error) = cause.downcast_ref::<BakeError>() {
             return if matches!(error, BakeError::Aborted) { EXIT_INTERRUPTED } else { EXIT_BAD_INPUT };
         }
-        if cause.is::<MergeError>() {
+        if cause.is::<MergeError>() || cause.is::<strict::Strict>() {
             return EXIT_BAD_INPUT;
         }
         if cause.is::<io::Error>() {

@@ -340,7 +340,9 @@ impl ShelfArgs {
     pub fn load(path: &Path, set: &[String]) -> anyhow::Result<Scene> {
         let parse = |text: &String| text.parse().map_err(|error| Usage(format!("--set {text}: {error}")));
         let overrides = set.iter().map(parse).collect::<Result<Vec<Override>, _>>()?;
-        Ok(load::load(path, &overrides)?)
+        let scene = load::load(path, &overrides)?;
+        super::strict::check(&scene.warnings)?;
+        Ok(scene)
     }
 
     /// The error for a material that is not there.

@@ -1,6 +1,6 @@
 //! What render, parity and others share: from flags to a baked scene and a renderer.
 
-use super::{Usage, progress};
+use super::{Usage, progress, strict};
 use crate::bake::{Baker, SceneData, bake_watched};
 use crate::film::{Film, FilmSpec, Rect};
 use crate::render::vulkan::{FetchChoice, VulkanOptions};
@@ -135,7 +135,7 @@ impl FromStr for Define {
 impl SceneFlags {
     /// Loads a scene without the changes of its panels and applies the flags. Prints the loader's warnings.
     pub fn load(&self, path: &Path) -> anyhow::Result<Scene> {
-        Ok(self.adjusted(self.panels(path)?.scene(None)?))
+        self.adjusted(self.panels(path)?.scene(None)?)
     }
 
     /// Opens a scene (`-` is TOML on standard input) with its keys changed by the flags.
@@ -152,16 +152,14 @@ impl SceneFlags {
     }
 
     /// A loaded scene with its settings changed by the flags. Prints the loader's warnings.
-    pub fn adjusted(&self, mut scene: Scene) -> Scene {
+    pub fn adjusted(&self, mut scene: Scene) -> anyhow::Result<Scene> {
         let settings = &mut scene.settings;
         settings.samples = self.spp.unwrap_or(settings.samples);
         settings.seed = self.seed.unwrap_or(settings.seed);
         settings.max_depth = self.max_depth.unwrap_or(settings.max_depth);
         settings.integrator = self.integrator.map_or(settings.integrator, Integrator::from);
-        for warning in &scene.warnings {
-            log::warn!("{warning}");
-        }
-        scene
+        strict::tell(&scene.warnings)?;
+        Ok(scene)
     }
 }
 
@@ -186,9 +184,7 @@ pub fn bake_scene_with(
     };
     bar.finish_and_clear();
     let data = data.with_context(|| scene.name.clone())?;
-    for warning in &data.warnings {
-        log::warn!("{warning}");
-    }
+    strict::tell(&data.warnings)?;
     Ok(data)
 }
 

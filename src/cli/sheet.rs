@@ -42,7 +42,7 @@ impl<'a> Sheet<'a> {
     pub fn scenes(&self) -> impl Iterator<Item = anyhow::Result<(Option<&str>, Scene)>> {
         self.chosen.iter().map(|panel| {
             let label = panel.map(|index| self.panels.labels()[index].as_str());
-            Ok((label, self.flags.adjusted(self.panels.scene(*panel)?)))
+            Ok((label, self.flags.adjusted(self.panels.scene(*panel)?)?))
         })
     }
 

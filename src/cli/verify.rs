@@ -1,7 +1,7 @@
 //! `gonio verify`: proofs, as one table.
 
 use super::setup::{BackendFlags, bake_scene, crop_of, film_of};
-use super::{EXIT_DIFFERS, Usage, functions, team};
+use super::{EXIT_DIFFERS, Usage, functions, strict, team};
 use crate::film::read::read_picture;
 use crate::film::{Film, FilmError, Image, OutputFile, write};
 use crate::scene::{Scene, load};
@@ -202,6 +202,7 @@ fn render(args: &VerifyArgs, scene: &Scene, samples: u32, row: &mut Row) -> anyh
     for warning in &scene.warnings {
         log::info!("{warning}");
     }
+    strict::check(&scene.warnings)?;
     let data = bake_scene(scene)?;
     let session = team::session(&args.backend, &data, film_of(scene, &data, crop_of(scene, None)?))?;
     session.render(0..samples, &Watch::default())?;

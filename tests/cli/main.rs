@@ -10,6 +10,7 @@ mod parity;
 mod pictures;
 mod render;
 mod signals;
+mod strict;
 mod support;
 mod team;
 mod verify;
