@@ -258,6 +258,7 @@ fn sky_texture(width: u32, height: u32, data: TextureData) -> Texture {
         offset: [0.0; 2],
         mipmap: false,
         shear: [0.0; 2],
+        extrapolated: false,
     }
 }
 

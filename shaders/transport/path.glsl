@@ -42,6 +42,27 @@ void shade_escape(PathState path, SampleKey key) {
     add_limited(path.slot, path.depth, seen, 0.0, dither_hash(key, DITHER_BACKGROUND));
 }
 
+// Adds what a scattered ray would see of the environment if `surface`, the first that it meets and that casts no shadow, were
+// not there: light samples see it, too, so both are weighed as ever.
+void shade_beyond(PathState path, SampleKey key, Surface surface) {
+    bool casts = (load_instance(surface.instance).flags & INSTANCE_NO_SHADOW) == 0u;
+    if (casts || path.pdf <= 0.0 || (path.flags & PATH_BEHIND_SHADOWLESS) != 0u) {
+        return;
+    }
+    vec3 direction = path.ray.direction;
+    Spectrum radiance = background(direction);
+    float sampled = header.environment_density * pdf_environment(direction);
+    if (sampled <= 0.0 || spectrum_max(radiance) <= 0.0) {
+        return;
+    }
+    Spectrum seen = path.throughput * radiance;
+    vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
+    Ray ray = spawn_through(surface, direction, T_INFINITE * SHADOW_END);
+    uint dither = dither_hash(key, DITHER_BACKGROUND);
+    float weight = power_heuristic(path.pdf, sampled);
+    push_shadow(ShadowRay(ray, contribution, path.slot, dither, 0u, weight));
+}
+
 // Light of one emitter, chosen at random, that the surface sends on towards `wo`; its shadow ray is appended.
 void shade_emitter(PathState path, SampleKey key, Surface surface, Material material, Frame frame, vec3 wo) {
     uint chosen = 0u;

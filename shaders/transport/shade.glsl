@@ -51,6 +51,9 @@ void shade(PathState incoming, Hit hit) {
     uint named = surface.material;
     Material material = material_at(path.ray.direction, hit, key, DIMENSION_LEAF, surface);
     NAME_MODEL(material)
+    if (SCENE_SHADOWLESS && HAS_EMITTER(EMITTER_ENVIRONMENT)) {
+        shade_beyond(path, key, surface);
+    }
     if (SCENE_NESTED) {
         if (!meet_interface(path, surface, hit.t, material)) {
             return;

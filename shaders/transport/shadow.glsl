@@ -13,10 +13,14 @@
 #include "transport/local.glsl"
 #include "transport/textured.glsl"
 
+// A shadow ray that is longer leads out of the scene.
+const float FAR = 1.0e29;
+
 // The weight of a shadow ray over the free way from its origin to `t`. Where an object that casts no shadow is in the way, no
-// ray that a surface scatters could have found the light: it counts in full.
+// ray that a surface scatters could have found the light: it counts in full. Light from outside the scene is looked for behind
+// such objects, too (`shade_beyond`).
 float way_weight(ShadowRay shadow, float t) {
-    if (!SCENE_SHADOWLESS || shadow.weight >= 1.0) {
+    if (!SCENE_SHADOWLESS || shadow.weight >= 1.0 || shadow.ray.t_max > FAR) {
         return shadow.weight;
     }
     Ray way = shadow.ray;

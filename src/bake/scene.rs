@@ -83,10 +83,10 @@ fn bake_with(
     data.times.top_s += placing.elapsed().as_secs_f64();
     data.header.instance_count = data.instances.len() as u32;
     data.header.light_count = data.lights.len() as u32;
-    data.header.shadow_rays = shadow_rays(&data);
     data.header.level_count = if data.branches() { data.header.max_depth + 1 } else { 1 };
     let shadowless = data.instances.iter().any(|instance| instance.flags & INSTANCE_NO_SHADOW != 0);
     data.header.shadowless = u32::from(shadowless && data.header.integrator == INTEGRATOR_PATH);
+    data.header.shadow_rays = shadow_rays(&data);
     if data.header.shadows == SHADOWS_FILTERED && !data.has_panes() {
         data.header.shadows = SHADOWS_OPAQUE;
     }
@@ -97,11 +97,12 @@ fn bake_with(
     Ok(SceneData::from(data))
 }
 
-/// Shadow rays of one hit at most: to each light from each of its shading points, or to one emitter.
+/// Shadow rays of one hit at most: to each light from each of its shading points, or to one emitter, and one that goes on behind
+/// an object without a shadow.
 fn shadow_rays(data: &SceneArrays) -> u32 {
     let gouraud = data.instances.iter().any(|instance| instance.flags & INSTANCE_GOURAUD != 0);
     match data.header.integrator {
-        INTEGRATOR_PATH => 1,
+        INTEGRATOR_PATH => 1 + data.header.shadowless,
         _ => data.lights.len() as u32 * if gouraud { 3 } else { 1 },
     }
 }

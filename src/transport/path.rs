@@ -19,8 +19,8 @@ use super::{
     DITHER_BACKGROUND, DITHER_LIGHT, DITHER_SURFACE, LOBE_SCATTER, LOBE_THROUGH, Queues, push_path, push_shadow,
 };
 use crate::layout::{
-    EMITTER_LIGHT, Hit, MODEL_THIN_DIELECTRIC, Material, PathState, SHADOWS_FILTERED, SceneView, ShadowRay, T_INFINITE,
-    load_emitter,
+    EMITTER_LIGHT, Hit, INSTANCE_NO_SHADOW, MODEL_THIN_DIELECTRIC, Material, PATH_BEHIND_SHADOWLESS, PathState,
+    SHADOWS_FILTERED, SceneView, ShadowRay, T_INFINITE, load_emitter, load_instance,
 };
 use crate::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
 use crate::shading::environment::{background, pdf_environment};
@@ -49,6 +49,26 @@ pub fn shade_escape(scene: &SceneView, path: &PathState, key: SampleKey, queues:
     }
     let seen = path.throughput * (radiance * weight);
     add_limited(scene, path.slot, path.depth, seen, 0.0, dither_hash(key, DITHER_BACKGROUND), queues);
+}
+
+/// Adds what a scattered ray would see of the environment if `surface`, the first that it meets and that casts no shadow, were
+/// not there: light samples see it, too, so both are weighed as ever.
+pub fn shade_beyond(scene: &SceneView, path: &PathState, key: SampleKey, surface: &Surface, queues: &mut Queues) {
+    let casts = (load_instance(scene, surface.instance).flags & INSTANCE_NO_SHADOW) == 0;
+    if casts || path.pdf <= 0.0 || (path.flags & PATH_BEHIND_SHADOWLESS) != 0 {
+        return;
+    }
+    let direction = path.ray.direction;
+    let radiance = background(scene, direction);
+    let sampled = scene.header.environment_density * pdf_environment(scene, direction);
+    if sampled <= 0.0 || spectrum_max(radiance) <= 0.0 {
+        return;
+    }
+    let seen = path.throughput * radiance;
+    let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
+    let ray = spawn_through(surface, direction, T_INFINITE * SHADOW_END);
+    let (dither, weight) = (dither_hash(key, DITHER_BACKGROUND), power_heuristic(path.pdf, sampled));
+    push_shadow(queues, ShadowRay { ray, contribution, slot: path.slot, dither, layer: 0, weight });
 }
 
 /// Light of one emitter, chosen at random, that the surface sends on towards `wo`; its shadow ray is appended.

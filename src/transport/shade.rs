@@ -4,7 +4,7 @@ use super::faceted::{faceted, shading_point, shading_points};
 use super::generate::sample_key;
 use super::local::{shade_local, shade_through};
 use super::nested::meet_interface;
-use super::path::{shade_escape, shade_path};
+use super::path::{shade_beyond, shade_escape, shade_path};
 use super::textured::material_at;
 use super::whitted::shade_whitted;
 use super::{DIMENSION_LEAF, DITHER_BACKGROUND, Queues, add_aov, add_contribution};
@@ -53,6 +53,9 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     let mut surface = surface_at(scene, &path.ray, hit);
     let named = surface.material;
     let mut material = material_at(scene, path.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
+    if scene.header.shadowless != 0 && scene.header.environment_density > 0.0 {
+        shade_beyond(scene, &path, key, &surface, queues);
+    }
     if scene.header.nested != 0 && !meet_interface(scene, &path, &surface, hit.t, &mut material, queues) {
         return;
     }

@@ -12,10 +12,14 @@ use crate::trace::spawn::spawn_through;
 use crate::trace::surface::surface_at;
 use crate::trace::traverse::{trace_any, trace_barrier, trace_occluder};
 
+/// A shadow ray that is longer leads out of the scene.
+const FAR: f32 = 1.0e29;
+
 /// The weight of a shadow ray over the free way from its origin to `t`. Where an object that casts no shadow is in the way, no
-/// ray that a surface scatters could have found the light: it counts in full.
+/// ray that a surface scatters could have found the light: it counts in full. Light from outside the scene is looked for behind
+/// such objects, too (`shade_beyond`).
 pub fn way_weight(scene: &SceneView, shadow: &ShadowRay, t: f32) -> f32 {
-    if scene.header.shadowless == 0 || shadow.weight >= 1.0 {
+    if scene.header.shadowless == 0 || shadow.weight >= 1.0 || shadow.ray.t_max > FAR {
         return shadow.weight;
     }
     let mut way = shadow.ray;

@@ -84,6 +84,30 @@ fn one_that_is_in_the_way_takes_nothing() {
 }
 
 #[test]
+fn the_environment_is_seen_through_one_without_noise() {
+    // A rough metal floor under a bright sky: nearly all of its light is found by what it scatters.
+    let mut scene = lit_floor(Shadows::Opaque, true);
+    scene.objects.truncate(1);
+    scene.background = Background::Gradient { bottom: Rgb::ZERO, top: Rgb::splat(2.0) };
+    if let Model::RoughConductor { alpha_u, alpha_v, .. } = &mut scene.materials[0].model {
+        (*alpha_u, *alpha_v) = (0.02, 0.02);
+    }
+    let alone = mean(&scene);
+    for material in [2, 3] {
+        let mut scene = scene.clone();
+        // Large enough to be behind every ray, and two of them, one behind the other.
+        ball(&mut scene, 3.0, Vec3::Y * 4.0, material, false);
+        ball(&mut scene, 3.0, Vec3::Y * 11.0, material, false);
+        let found = mean(&scene);
+        assert_equal_means(found, alone, &format!("material {material}"));
+        assert!(found.error < 2.0 * alone.error, "material {material}: {found:?} beside {alone:?}");
+        if !same_on_the_device(&scene, "the sky behind balls without shadows") {
+            return;
+        }
+    }
+}
+
+#[test]
 fn an_inner_interface_that_casts_no_shadow_does_not_count_light_twice() {
     // Water whose surface stands inside a glass: of its own surface there nothing is met.
     let mut scene = lit_floor(Shadows::Opaque, false);

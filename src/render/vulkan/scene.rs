@@ -136,7 +136,11 @@ fn choose(
 fn set_words(data: &SceneData) -> [u64; 3] {
     let words = |bytes: usize| (bytes as u64).div_ceil(WORD);
     let heap = heap_parts(data).map(|(first, bytes)| u64::from(first) + words(bytes.len()));
-    [words(size_of_val(&data.shapes.nodes[..])), words(size_of_val(&data.shapes.triangles[..])), heap.into_iter().max().unwrap_or(0)]
+    [
+        words(size_of_val(&data.shapes.nodes[..])),
+        words(size_of_val(&data.shapes.triangles[..])),
+        heap.into_iter().max().unwrap_or(0),
+    ]
 }
 
 /// An error that says why a device cannot hold the scene where kernels fetch it as `choice` says. Nothing is opened.
