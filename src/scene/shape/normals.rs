@@ -23,16 +23,17 @@ pub fn compute_group_normals(mesh: &mut Mesh, points: &[u32], groups: &[u32], cr
     let point = |vertex: u32| points.get(vertex as usize).copied().unwrap_or(vertex);
     let count = points.iter().max().map_or(mesh.positions.len(), |most| *most as usize + 1);
     let crease = crease.clamp(0.0, PI);
-    let mut sums = vec![DVec3::ZERO; count];
+    let mut sums = Sums::new(count);
     for face in 0..mesh.triangles.len() {
         let area = area_vector(mesh, face);
-        mesh.triangles[face].iter().for_each(|v| sums[point(*v) as usize] += area);
+        mesh.triangles[face].iter().for_each(|v| sums.add(point(*v), area));
     }
     // Most points are smooth all around: all their corners have the sum.
     let uneven = uneven_points(mesh, point, groups, &sums, crease);
+    let normals = sums.into_directions();
     mesh.normals = match points {
-        [] => sums.into_iter().map(direction).collect(),
-        _ => points.iter().map(|point| direction(sums[*point as usize])).collect(),
+        [] => normals,
+        _ => points.iter().map(|point| normals[*point as usize]).collect(),
     };
     let around = Incidence::new(&mesh.triangles, count, point, |point| uneven[point as usize]);
     let cos_crease = libm::cos(crease);
@@ -50,18 +51,18 @@ pub fn compute_group_normals(mesh: &mut Mesh, points: &[u32], groups: &[u32], cr
 
 /// Which points may have corners of different normals. Where every face is within half the crease angle of the sum, all
 /// are within the crease angle of each other.
-fn uneven_points(mesh: &Mesh, point: impl Fn(u32) -> u32, groups: &[u32], sums: &[DVec3], crease: f64) -> Vec<bool> {
+fn uneven_points(mesh: &Mesh, point: impl Fn(u32) -> u32, groups: &[u32], sums: &Sums, crease: f64) -> Vec<bool> {
     /// What rounding could hide, radians.
     const MARGIN: f64 = 1e-4;
     let cos_half = libm::cos((0.5 * crease - MARGIN).max(0.0));
-    let mut uneven = vec![false; sums.len()];
+    let mut uneven = vec![false; sums.count];
     // 0: not seen yet. Faces of group 0 make all their points uneven anyway.
-    let mut first_group = vec![0u32; if groups.is_empty() { 0 } else { sums.len() }];
+    let mut first_group = vec![0u32; if groups.is_empty() { 0 } else { sums.count }];
     for (face, triangle) in mesh.triangles.iter().enumerate() {
         let own = area_vector(mesh, face);
         let group = groups.get(face).copied().unwrap_or(BY_CREASE);
         for p in triangle.map(|v| point(v) as usize) {
-            let sum = sums[p];
+            let sum = sums.at(p);
             let along = own.dot(sum);
             let near = || along >= 0.0 && along * along >= cos_half * cos_half * (own.dot(own) * sum.dot(sum));
             let mut even = group != 0 && sum != DVec3::ZERO && (group != BY_CREASE || near());
@@ -73,6 +74,38 @@ fn uneven_points(mesh: &Mesh, point: impl Fn(u32) -> u32, groups: &[u32], sums: 
         }
     }
     uneven
+}
+
+/// The sum at each point, in blocks that go one by one: a large mesh does without the room of another mesh.
+struct Sums {
+    blocks: Vec<Vec<DVec3>>,
+    count: usize,
+}
+
+impl Sums {
+    /// Points of a block, 48 MiB: allocators give as much back to the system as soon as it is free.
+    const BLOCK: usize = 1 << 21;
+
+    fn new(count: usize) -> Self {
+        let block = |start: usize| vec![DVec3::ZERO; Self::BLOCK.min(count - start)];
+        Self { blocks: (0..count).step_by(Self::BLOCK).map(block).collect(), count }
+    }
+
+    fn add(&mut self, point: u32, area: DVec3) {
+        self.blocks[point as usize / Self::BLOCK][point as usize % Self::BLOCK] += area;
+    }
+
+    fn at(&self, point: usize) -> DVec3 {
+        self.blocks[point / Self::BLOCK][point % Self::BLOCK]
+    }
+
+    fn into_directions(self) -> Vec<Vec3> {
+        let mut found = Vec::with_capacity(self.count);
+        for block in self.blocks {
+            found.extend(block.into_iter().map(direction));
+        }
+        found
+    }
 }
 
 /// The corners at one point.
