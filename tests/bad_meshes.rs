@@ -85,7 +85,8 @@ fn broken_text_ply_is_refused_with_its_line() {
         (body("3 0 1 -1\n"), 13, "-1 is not the index"),
         (body("3 0 1 x\n"), 13, "`x` is not a number"),
         (body("3 0 1 1.5\n"), 13, "`1.5` is not an integer"),
-        (body("2 0 1\n"), 13, "a face of 2 corners"),
+        (body("2 0 1\n"), 9, "no faces to draw, only 1 without three different corners"),
+        (body("3 0 1 1\n"), 9, "no faces to draw, only 1 without three different corners"),
         (body("-1 0 1\n"), 13, "has -1 items"),
         (body("4000000000 0 1\n"), 13, "the line ends"),
         (body("3 0 1 2\n").replace("1 0 0\n", "1 nan 0\n"), 11, "not finite"),
@@ -94,7 +95,7 @@ fn broken_text_ply_is_refused_with_its_line() {
             ascii(&format!(
                 "element face 1\nproperty list uchar int vertex_indices\n{VERTEX}end_header\n3 0 1 9\n{POINTS}"
             )),
-            9,
+            10,
             "vertex 9 of 3",
         ),
     ];
@@ -118,13 +119,14 @@ fn broken_binary_ply_is_refused_with_its_byte() {
         (file(&[255; 13]), start, "255 items runs over the end"),
         (file(&[3, 0, 0, 0, 0, 1, 0, 0, 0, 3, 0, 0, 0]), start, "vertex 3 of 3"),
         (file(&[3, 0, 0, 0, 0, 1, 0, 0, 0, 255, 255, 255, 255]), start, "-1 is not the index"),
-        (file(&[0]), start, "a face of 0 corners"),
     ];
     for (bytes, at, expected) in cases {
         let message = ply::mesh_from_bytes(&bytes, Path::new("bad.ply")).expect_err(expected).to_string();
         assert!(message.contains(expected), "{message}");
         assert!(message.starts_with(&format!("bad.ply: byte {at}: ")), "{message}, expected byte {at}");
     }
+    let message = ply::mesh_from_bytes(&file(&[0]), Path::new("bad.ply")).expect_err("no face").to_string();
+    assert_eq!(message, "bad.ply:9: the file has no faces to draw, only 1 without three different corners");
 }
 
 #[test]

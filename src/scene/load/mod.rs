@@ -15,9 +15,11 @@ pub mod ply;
 mod polygon;
 mod range;
 pub mod staging;
+mod stream;
 mod text;
 mod texture_files;
 pub mod toml;
+mod vertices;
 
 pub use self::toml::Override;
 pub use panels::Panels;
@@ -29,9 +31,9 @@ use std::path::{Path, PathBuf};
 /// Bytes of a scene on standard input at most: text of a size that nobody writes, so an endless stream ends.
 const STDIN_MAX: u64 = 64 << 20;
 
-/// Loads the scene in `path`, its format told by the extension: `.toml`, `.obj`, `.gltf`, `.glb`, `.ply`, `.xml` (Mitsuba);
-/// `-` is TOML on standard input, and `NAME:SIZE` may be a built-in scene (`builtin`). What the scene lacks to be a picture
-/// (a mesh has no camera) is staged.
+/// Loads the scene in `path`, its format told by the extension: `.toml`, `.obj`, `.gltf`, `.glb`, `.ply`, `.xml`
+/// (Mitsuba); `-` is TOML on standard input, and `NAME:SIZE` may be a built-in scene (`builtin`). What the scene lacks to be
+/// a picture (a mesh has no camera) is staged.
 pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
     load_with(path, overrides, &[])
 }

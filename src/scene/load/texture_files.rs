@@ -1,4 +1,4 @@
-//! Pictures that several materials use are decoded once and kept once.
+//! Pictures that several materials use are decoded once and kept once; and files that others name.
 
 use super::image::{ColorSpace, load_texture, load_texture_for};
 use crate::picture::Purpose;
@@ -67,4 +67,38 @@ pub fn intern(textures: &mut Vec<Texture>, texture: Texture) -> TextureId {
         textures.len() - 1
     });
     TextureId(index as u32)
+}
+
+/// The file that `name` in a file of `folder` means. Paths from Windows are read everywhere; where the file is not at the
+/// place of another computer that its path tells, it may lie in `folder`.
+pub fn beside(folder: &Path, name: &str) -> PathBuf {
+    let name = name.replace('\\', "/");
+    let path = folder.join(&name);
+    if !path.is_file()
+        && let Some((_, last)) = name.rsplit_once('/')
+        && folder.join(last).is_file()
+    {
+        return folder.join(last);
+    }
+    path
+}
+
+/// Names after a keyword: several, each of which may stand in quotation marks, or one that has spaces.
+pub fn words_or_whole(folder: &Path, text: &str) -> Vec<String> {
+    let is_one = beside(folder, text).is_file();
+    if is_one || !text.contains(char::is_whitespace) {
+        return if text.is_empty() { Vec::new() } else { vec![text.to_owned()] };
+    }
+    let mut names = vec![String::new()];
+    let mut is_quoted = false;
+    for character in text.chars() {
+        is_quoted ^= character == '"';
+        if character.is_whitespace() && !is_quoted {
+            names.push(String::new());
+        } else if let Some(name) = names.last_mut() {
+            name.push(character);
+        }
+    }
+    names.retain(|name| !name.is_empty());
+    names
 }

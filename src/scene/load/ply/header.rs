@@ -1,6 +1,7 @@
 //! The header of a PLY file: what elements there are, and of what.
 
-use super::Place;
+use super::{Failure, Place};
+use crate::scene::load::stream::Stream;
 
 /// How the numbers after the header are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,6 +96,12 @@ impl Element {
         self.properties.iter().position(|p| p.length.is_none() && names.contains(&p.name.as_str()))
     }
 
+    /// Bytes of one of these in a binary file; None if it has lists.
+    pub fn fixed_size(&self) -> Option<usize> {
+        let size = |p: &Property| p.length.is_none().then_some(p.item.size());
+        self.properties.iter().map(size).sum()
+    }
+
     pub fn find_list(&self, names: &[&str]) -> Option<usize> {
         self.properties.iter().position(|p| p.length.is_some() && names.contains(&p.name.as_str()))
     }
@@ -104,28 +111,52 @@ impl Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// Where the numbers start, in bytes.
-    pub end: usize,
+    /// Pictures, by `comment TextureFile`.
+    pub textures: Vec<String>,
     /// Lines of the header.
     pub lines: u32,
 }
 
-type Failure = (Place, String);
+impl Header {
+    /// Whether faces or strips come before the vertices that they are made of.
+    pub fn faces_come_first(&self) -> bool {
+        let place = |names: &[&str]| self.elements.iter().position(|element| names.contains(&element.name.as_str()));
+        matches!((place(&["face", "tristrips"]), place(&["vertex"])), (Some(face), Some(vertex)) if face < vertex)
+    }
+
+    /// Whether corners of faces have texture coordinates.
+    pub fn has_wedges(&self) -> bool {
+        self.elements.iter().any(|element| element.name == "face" && element.find_list(&["texcoord"]).is_some())
+    }
+}
 
 /// Most header lines read before the file is taken for something else.
 const LINES_MAX: u32 = 10_000;
 
-pub(super) fn parse(bytes: &[u8]) -> Result<Header, Failure> {
+/// Reads the header, after which the numbers follow in `stream`.
+pub(super) fn parse(stream: &mut Stream) -> Result<Header, Failure> {
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
-    let (mut at, mut line_number) = (0, 0);
+    let mut textures = Vec::new();
+    let mut line_number = 0;
     loop {
-        let Some((line, next)) = next_line(bytes, at) else {
-            return Err((Place::Line(line_number + 1), "the header has no end_header".to_owned()));
-        };
-        at = next;
+        if !stream.next_line()? {
+            return Err(Failure::at(Place::Line(line_number + 1), "the header has no end_header"));
+        }
         line_number += 1;
-        let fail = |message: String| Err((Place::Line(line_number), message));
+        let fail = |message: String| Err(Failure::at(Place::Line(line_number), message));
+        if line_number > LINES_MAX {
+            return fail(format!("a header of more than {LINES_MAX} lines"));
+        }
+        let line = stream.line();
+        // Comments are in whatever encoding their writer's system had.
+        if line_number > 1 && (line.starts_with(b"comment") || line.starts_with(b"obj_info")) {
+            let text = String::from_utf8_lossy(line);
+            if let Some(name) = text.strip_prefix("comment").and_then(|rest| rest.trim().strip_prefix("TextureFile")) {
+                textures.push(name.trim().to_owned());
+            }
+            continue;
+        }
         let Ok(line) = std::str::from_utf8(line) else {
             return fail("the header is not text".to_owned());
         };
@@ -136,11 +167,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Failure> {
             }
             continue;
         }
-        if line_number > LINES_MAX {
-            return fail(format!("a header of more than {LINES_MAX} lines"));
-        }
         match words.as_slice() {
-            [] | ["comment" | "obj_info", ..] => {}
+            [] => {}
             ["end_header"] => break,
             ["format", name, version] => {
                 encoding = Some(match *name {
@@ -175,20 +203,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Failure> {
         }
     }
     let Some(encoding) = encoding else {
-        return Err((Place::Line(line_number), "the header has no format line".to_owned()));
+        return Err(Failure::at(Place::Line(line_number), "the header has no format line"));
     };
-    Ok(Header { encoding, elements, end: at, lines: line_number })
-}
-
-/// The line that starts at `at`, without its end, and where the next one starts. Ends are \n, \r\n or a lone \r.
-fn next_line(bytes: &[u8], at: usize) -> Option<(&[u8], usize)> {
-    let rest = bytes.get(at..).filter(|rest| !rest.is_empty())?;
-    let Some(length) = rest.iter().position(|b| *b == b'\n' || *b == b'\r') else {
-        // The last line of the header may be the last of the file.
-        return (rest == b"end_header").then_some((rest, bytes.len()));
-    };
-    let end = if rest[length..].starts_with(b"\r\n") { length + 2 } else { length + 1 };
-    Some((&rest[..length], at + end))
+    Ok(Header { encoding, elements, textures, lines: line_number })
 }
 
 fn property(words: &[&str]) -> Result<Property, String> {

@@ -1,44 +1,96 @@
 //! PLY (Turk 1994): triangle and polygon meshes, in text or binary of either byte order.
 //!
 //! Read are positions, normals, colours and texture coordinates of the element `vertex`, the index lists of `face` and
-//! `tristrips`; everything else is skipped. Colours count as sRGB-encoded if integer and as linear if floating.
+//! `tristrips`, colours of faces where vertices have none, and what MeshLab adds: texture coordinates of corners
+//! (`texcoord`) and pictures (`comment TextureFile`). What else there is is named in a warning. Colours count as
+//! sRGB-encoded if integer and as linear if floating.
 
 mod attribute;
+mod face;
 mod header;
 mod numbers;
+mod vertex;
 
-use super::image::srgb_to_linear;
-use super::{polygon, staging};
-use crate::scene::{Geometry, Location, Material, MaterialId, Mesh, MeshId, Object, Scene, SceneError, Transform};
+use super::image::ColorSpace;
+use super::staging::bare_scene;
+use super::stream::{Stream, failed};
+use super::texture_files::{TextureFiles, beside, intern};
+use crate::scene::{
+    Geometry, Location, Material, MaterialId, Mesh, MeshId, Object, Rgb, Scene, SceneError, TextureBinding, Transform,
+    shape,
+};
 pub use attribute::Attribute;
-use glam::{Vec2, Vec3};
-use header::{Element, Header};
+use face::Faces;
+use header::{Element, Encoding, Header};
 use numbers::{Reader, Values};
+use std::io;
 use std::path::Path;
 
 /// Where in a file something is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Line(u32),
-    Byte(usize),
+    Byte(u64),
+}
+
+/// What is wrong.
+#[derive(Debug)]
+enum Failure {
+    /// In the element that is being read.
+    Here(String),
+    At(Place, String),
+    Read(io::Error),
+}
+
+impl Failure {
+    fn here(message: impl Into<String>) -> Self {
+        Self::Here(message.into())
+    }
+
+    fn at(place: Place, message: impl Into<String>) -> Self {
+        Self::At(place, message.into())
+    }
+
+    /// As the error of the file `name`.
+    fn of(self, name: &Path) -> SceneError {
+        let mut location = Location::file(name);
+        match self {
+            Self::Here(message) => SceneError::bad(location, message),
+            Self::At(Place::Line(line), message) => {
+                location.line = line;
+                SceneError::bad(location, message)
+            }
+            Self::At(Place::Byte(at), message) => SceneError::bad(location, format!("byte {at}: {message}")),
+            Self::Read(error) => failed(name, error),
+        }
+    }
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Self::Read(error)
+    }
 }
 
 /// Edges sharper than this stay sharp where a file has no normals, radians (40 degrees).
 const CREASE: f64 = 0.698;
 
-/// Loads the file as a scene: the mesh, smooth where it has no normals of its own, in the house's grey. `load::load` stages it.
+/// Loads the file as a scene: the mesh, smooth where it has no normals of its own, in the house's grey, its own colours or its
+/// picture. `load::load` stages it.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
-    let mut mesh = read_mesh(path)?;
+    let read = read(path, &|| Stream::open(path), Wanted { corners: true, attributes: false })?;
+    let mut scene = bare_scene(path);
+    scene.warnings = read.warnings(path);
+    let mut mesh = read.mesh;
     if mesh.normals.is_empty() {
-        crate::scene::shape::compute_smooth_normals(&mut mesh, CREASE);
+        shape::compute_group_normals(&mut mesh, &read.origins, &[], CREASE);
     }
-    let mut scene = staging::bare_scene(path);
-    scene.materials.push(Material::grey("ply"));
+    add_materials(&read.textures, &read.numbers, path, &mut mesh, &mut scene);
     scene.objects.push(Object {
         name: mesh.name.clone(),
         geometry: Geometry::Mesh(MeshId(0)),
         transform: Transform::default(),
-        material: Some(MaterialId(0)),
+        material: mesh.face_materials.is_empty().then_some(MaterialId(0)),
         casts_shadow: None,
         shading: None,
     });
@@ -46,110 +98,215 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
+/// One material for each picture, or one in grey; the last of several is for faces that have no picture.
+fn add_materials(pictures: &[String], numbers: &[u32], path: &Path, mesh: &mut Mesh, scene: &mut Scene) {
+    let grey = Material::grey("ply");
+    let white = Material { color: Rgb::ONE, ..grey.clone() };
+    let plain = if mesh.colors.is_empty() { grey } else { white.clone() };
+    let shown = match (mesh.uvs.is_empty(), numbers.is_empty()) {
+        (true, _) => &[],
+        (false, true) => &pictures[..pictures.len().min(1)],
+        (false, false) => pictures,
+    };
+    if shown.len() < pictures.len() {
+        let message = format!("{}: ignored: TextureFile {}", path.display(), pictures[shown.len()..].join(", "));
+        scene.warnings.push(message);
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut files = TextureFiles::default();
+    for picture in shown {
+        let mut material = plain.clone();
+        match files.load(&beside(folder, picture), ColorSpace::Srgb) {
+            Ok(texture) => {
+                let texture = intern(&mut scene.textures, texture);
+                material = Material { textures: vec![TextureBinding::color(texture)], ..white.clone() };
+            }
+            Err(error) => scene.warnings.push(format!("{}: no texture: {error}", path.display())),
+        }
+        scene.materials.push(material);
+    }
+    if !numbers.is_empty() {
+        let material = |number: u32| MaterialId(number.min(shown.len() as u32));
+        mesh.face_materials = numbers.iter().map(|number| material(*number)).collect();
+        mesh.face_materials.resize(mesh.triangles.len(), MaterialId(shown.len() as u32));
+    }
+    if shown.is_empty() || !numbers.is_empty() {
+        scene.materials.push(plain);
+    }
+}
+
 /// Reads the mesh in the file `path`, without normals if it has none.
 pub fn read_mesh(path: &Path) -> Result<Mesh, SceneError> {
-    mesh_from_bytes(&read_bytes(path)?, path)
+    Ok(read(path, &|| Stream::open(path), Wanted::default())?.mesh)
 }
 
 /// Reads the mesh in the file `path` with the attributes of its vertices and triangles.
 pub fn read_mesh_with_attributes(path: &Path) -> Result<(Mesh, Vec<Attribute>), SceneError> {
-    let mut attributes = Vec::new();
-    let mesh = read(&read_bytes(path)?, path, Some(&mut attributes))?;
-    Ok((mesh, attributes))
-}
-
-fn read_bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
-    std::fs::read(path).map_err(|source| SceneError::Io { location: Location::file(path), source })
+    let read = read(path, &|| Stream::open(path), Wanted { attributes: true, corners: false })?;
+    Ok((read.mesh, read.attributes))
 }
 
 /// Reads a mesh from the bytes of a PLY file; `name` is that file, for messages.
 pub fn mesh_from_bytes(bytes: &[u8], name: &Path) -> Result<Mesh, SceneError> {
-    read(bytes, name, None)
+    Ok(read(name, &|| Ok(Stream::of(bytes)), Wanted { corners: true, attributes: false })?.mesh)
 }
 
-fn read(bytes: &[u8], name: &Path, attributes: Option<&mut Vec<Attribute>>) -> Result<Mesh, SceneError> {
-    let mut mesh = parse(bytes, attributes).map_err(|(place, message)| {
-        let mut location = Location::file(name);
-        match place {
-            Place::Line(line) => {
-                location.line = line;
-                SceneError::bad(location, message)
-            }
-            Place::Byte(at) => SceneError::bad(location, format!("byte {at}: {message}")),
+/// What is wanted of a file beside its triangles.
+#[derive(Clone, Copy, Debug, Default)]
+struct Wanted {
+    /// What belongs to corners and faces, for which vertices are doubled.
+    corners: bool,
+    /// Properties under names.
+    attributes: bool,
+}
+
+/// All there is in a file.
+#[derive(Debug, Default)]
+struct Read {
+    mesh: Mesh,
+    attributes: Vec<Attribute>,
+    /// The vertex of the file that each vertex was; empty where they are those of the file.
+    origins: Vec<u32>,
+    /// Vertices of the file.
+    vertices: usize,
+    textures: Vec<String>,
+    /// The picture of each triangle, by its number.
+    numbers: Vec<u32>,
+    degenerate: usize,
+    unused: Vec<String>,
+    has_wedges: bool,
+}
+
+impl Read {
+    fn warnings(&self, path: &Path) -> Vec<String> {
+        let mut found = Vec::new();
+        let mut say = |message: String| found.push(format!("{}: {message}", path.display()));
+        if !self.unused.is_empty() {
+            say(format!("ignored: {}", self.unused.join(", ")));
         }
-    })?;
-    mesh.name = name.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    crate::scene::shape::repair_normals(&mut mesh);
-    Ok(mesh)
+        if self.has_wedges {
+            let more = self.origins.len().saturating_sub(self.vertices);
+            say(format!("texture coordinates are those of corners (texcoord): vertices doubled for them: {more}"));
+        }
+        if self.degenerate > 0 {
+            say(format!("faces with fewer than three different corners left out: {}", self.degenerate));
+        }
+        found
+    }
 }
 
-type Failure = (Place, String);
+/// Elements that a pass over the file takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pass {
+    All,
+    Vertices,
+    Faces,
+}
 
-/// `attributes`: where those of vertices and faces are put, if they are wanted.
-fn parse(bytes: &[u8], mut attributes: Option<&mut Vec<Attribute>>) -> Result<Mesh, Failure> {
-    let header = header::parse(bytes)?;
+/// Reads the file `name` that `open` opens.
+fn read<'a>(
+    name: &Path,
+    open: &dyn Fn() -> Result<Stream<'a>, SceneError>,
+    wanted: Wanted,
+) -> Result<Read, SceneError> {
+    let mut stream = open()?;
+    let mut header = header::parse(&mut stream).map_err(|failure| failure.of(name))?;
     let end_of_header = Place::Line(header.lines);
-    let mut reader = Reader::new(bytes, &header);
-    let mut mesh = Mesh::default();
+    let fail = |message: &str| Failure::at(end_of_header, message).of(name);
+    let mut found = Read { textures: std::mem::take(&mut header.textures), ..Read::default() };
+    header.textures = found.textures.clone();
+    let mut faces = Faces::new();
+    if header.faces_come_first() {
+        // Polygons are cut when their corners are known.
+        if stream.remaining().is_none() {
+            return Err(fail("faces before vertices are read from a file only, not from a pipe"));
+        }
+        read_pass(Pass::Vertices, &header, stream, wanted, &mut faces, &mut found).map_err(|f| f.of(name))?;
+        let mut again = open()?;
+        header::parse(&mut again).map_err(|failure| failure.of(name))?;
+        read_pass(Pass::Faces, &header, again, wanted, &mut faces, &mut found).map_err(|f| f.of(name))?;
+    } else {
+        read_pass(Pass::All, &header, stream, wanted, &mut faces, &mut found).map_err(|f| f.of(name))?;
+    }
+    found.degenerate = faces.degenerate;
+    if found.mesh.triangles.is_empty() {
+        return Err(match found.degenerate {
+            0 => fail("the file has no faces to draw"),
+            count => fail(&format!("the file has no faces to draw, only {count} without three different corners")),
+        });
+    }
+    found.vertices = found.mesh.positions.len();
+    found.numbers = std::mem::take(&mut faces.numbers);
+    found.origins = faces.finish(&mut found.mesh);
+    found.has_wedges = wanted.corners && header.has_wedges();
+    found.unused = vertex::unused(&header);
+    found.mesh.name = name.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    shape::repair_normals(&mut found.mesh);
+    Ok(found)
+}
+
+fn read_pass(
+    pass: Pass,
+    header: &Header,
+    stream: Stream,
+    wanted: Wanted,
+    faces: &mut Faces,
+    found: &mut Read,
+) -> Result<(), Failure> {
+    let end_of_header = Place::Line(header.lines);
+    let mut reader = Reader::new(stream, header);
+    let mesh = &mut found.mesh;
     for element in &header.elements {
-        check_count(element, &header, &reader)?;
-        let mut further = match attributes {
-            Some(_) if matches!(element.name.as_str(), "vertex" | "face") => attribute::Columns::find(element),
-            _ => Vec::new(),
+        check_count(element, header, &reader)?;
+        let takes = |name: &str, other: Pass| element.name == name && pass != other;
+        let takes_vertices = takes("vertex", Pass::Faces) && mesh.positions.is_empty();
+        let takes_faces = takes("face", Pass::Vertices);
+        let mut further = match wanted.attributes && (takes_vertices || takes_faces) {
+            true => attribute::Columns::find(element),
+            false => Vec::new(),
         };
-        match element.name.as_str() {
-            "vertex" if mesh.positions.is_empty() => {
-                let columns = Columns::find(element).map_err(|message| (end_of_header, message))?;
-                each(&mut reader, element, |values| {
-                    further.iter_mut().for_each(|further| further.push(values, 1));
-                    columns.push(values, &mut mesh)
-                })?;
-            }
-            "face" => match element.find_list(&["vertex_indices", "vertex_index"]) {
-                Some(list) => each(&mut reader, element, |values| {
-                    let before = mesh.triangles.len();
-                    push_face(values.list(list), &mut mesh)?;
-                    further.iter_mut().for_each(|further| further.push(values, mesh.triangles.len() - before));
-                    Ok(())
-                })?,
-                None => {
-                    return Err((end_of_header, "element face has no list vertex_indices".to_owned()));
-                }
-            },
-            "tristrips" => match element.find_list(&["vertex_indices", "vertex_index"]) {
-                Some(list) => each(&mut reader, element, |values| push_strip(values.list(list), &mut mesh))?,
-                None => each(&mut reader, element, |_| Ok(()))?,
-            },
-            _ => each(&mut reader, element, |_| Ok(()))?,
+        if takes_vertices {
+            let columns = vertex::Columns::find(element).map_err(|message| Failure::at(end_of_header, message))?;
+            each(&mut reader, element, |values| {
+                further.iter_mut().for_each(|further| further.push(values, 1));
+                columns.push(values, mesh)
+            })?;
+        } else if takes_faces {
+            let Some(columns) = face::Columns::find(element, header, wanted.corners) else {
+                return Err(Failure::at(end_of_header, "element face has no list vertex_indices"));
+            };
+            each(&mut reader, element, |values| {
+                let before = mesh.triangles.len();
+                faces.push(values, &columns, mesh)?;
+                further.iter_mut().for_each(|further| further.push(values, mesh.triangles.len() - before));
+                Ok(())
+            })?;
+        } else if takes("tristrips", Pass::Vertices)
+            && let Some(columns) = face::Columns::find(element, header, false)
+        {
+            each(&mut reader, element, |values| faces.push_strip(values, &columns, mesh))?;
+        } else {
+            each(&mut reader, element, |_| Ok(()))?;
         }
-        if let Some(attributes) = attributes.as_deref_mut() {
-            attributes.extend(further.into_iter().map(|further| further.attribute));
-        }
+        found.attributes.extend(further.into_iter().map(|further| further.attribute));
     }
-    if mesh.triangles.is_empty() {
-        return Err((end_of_header, "the file has no faces to draw".to_owned()));
-    }
-    check_indices(&mesh).map_err(|message| (end_of_header, message))?;
-    Ok(mesh)
+    Ok(())
 }
 
 /// Refuses a count that the rest of the file cannot hold, before memory is taken for it.
 fn check_count(element: &Element, header: &Header, reader: &Reader) -> Result<(), Failure> {
-    // The last number of a text file needs no separator.
-    let room = reader.remaining() as u64 + u64::from(header.encoding == header::Encoding::Ascii);
-    let needed = element.count.saturating_mul(element.size_min(header.encoding) as u64);
-    if needed > room {
-        let message = format!(
-            "element {} claims {} items of at least {} bytes, but only {} bytes follow",
-            element.name,
-            element.count,
-            element.size_min(header.encoding),
-            reader.remaining()
-        );
-        return Err((reader.place(), message));
-    }
     if element.count > u64::from(u32::MAX) && !element.properties.is_empty() {
-        return Err((reader.place(), format!("element {} claims {} items", element.name, element.count)));
+        return Err(Failure::at(reader.place(), format!("element {} claims {} items", element.name, element.count)));
+    }
+    let Some(rest) = reader.remaining() else { return Ok(()) };
+    // The last number of a text file needs no separator.
+    let room = rest + u64::from(header.encoding == Encoding::Ascii);
+    let least = element.size_min(header.encoding);
+    if element.count.saturating_mul(least as u64) > room {
+        let (name, count) = (&element.name, element.count);
+        let message =
+            format!("element {name} claims {count} items of at least {least} bytes, but only {rest} bytes follow");
+        return Err(Failure::at(reader.place(), message));
     }
     Ok(())
 }
@@ -166,103 +323,15 @@ fn each(
     let mut values = Values::default();
     for index in 0..element.count {
         let before = reader.place();
-        let read = reader.read(element, &mut values).and_then(|()| use_values(&values));
-        if let Err(message) = read {
-            let place = if matches!(before, Place::Line(_)) { reader.place() } else { before };
-            return Err((place, format!("{} {index} of {}: {message}", element.name, element.count)));
+        let read = reader.read(element, &mut values).and_then(|()| use_values(&values).map_err(Failure::Here));
+        match read {
+            Err(Failure::Here(message)) => {
+                let place = if matches!(before, Place::Line(_)) { reader.place() } else { before };
+                let message = format!("{} {index} of {}: {message}", element.name, element.count);
+                return Err(Failure::at(place, message));
+            }
+            outcome => outcome?,
         }
     }
     Ok(())
-}
-
-/// Which properties of a vertex mean what.
-struct Columns {
-    position: [usize; 3],
-    normal: Option<[usize; 3]>,
-    uv: Option<[usize; 2]>,
-    /// And whether they are codes to be decoded, and their full scale.
-    color: Option<([usize; 3], bool, f64)>,
-}
-
-impl Columns {
-    fn find(element: &Element) -> Result<Self, String> {
-        let three =
-            |names: [&[&str]; 3]| Some([element.find(names[0])?, element.find(names[1])?, element.find(names[2])?]);
-        let Some(position) = three([&["x"], &["y"], &["z"]]) else {
-            return Err("element vertex has no properties x, y, z".to_owned());
-        };
-        let uv = [("s", "t"), ("u", "v"), ("texture_u", "texture_v"), ("texture_s", "texture_t")]
-            .iter()
-            .find_map(|(u, v)| Some([element.find(&[u])?, element.find(&[v])?]));
-        let red: [&[&str]; 3] =
-            [&["red", "r", "diffuse_red"], &["green", "g", "diffuse_green"], &["blue", "b", "diffuse_blue"]];
-        let color = three(red).map(|columns| {
-            let item = element.properties[columns[0]].item;
-            (columns, !item.is_float(), item.full_scale())
-        });
-        Ok(Self { position, normal: three([&["nx"], &["ny"], &["nz"]]), uv, color })
-    }
-
-    fn push(&self, values: &Values, mesh: &mut Mesh) -> Result<(), String> {
-        let vector = |columns: [usize; 3]| Vec3::from_array(columns.map(|c| values.scalars[c] as f32));
-        let position = vector(self.position);
-        if !position.is_finite() {
-            return Err(format!("the position {position} is not finite"));
-        }
-        mesh.positions.push(position);
-        if let Some(columns) = self.normal {
-            mesh.normals.push(vector(columns));
-        }
-        if let Some(columns) = self.uv {
-            let uv = Vec2::from_array(columns.map(|c| values.scalars[c] as f32));
-            mesh.uvs.push(if uv.is_finite() { uv } else { Vec2::ZERO });
-        }
-        if let Some((columns, encoded, full_scale)) = self.color {
-            let channel = |c: usize| {
-                let v = values.scalars[c] / full_scale;
-                let v = if encoded { srgb_to_linear(v) } else { v };
-                // NaN becomes 0.
-                if v > 0.0 { v.min(1e6) as f32 } else { 0.0 }
-            };
-            mesh.colors.push(Vec3::from_array(columns.map(channel)));
-        }
-        Ok(())
-    }
-}
-
-fn index(value: f64) -> Result<u32, String> {
-    if (0.0..=4_294_967_294.0).contains(&value) && value == libm::floor(value) {
-        return Ok(value as u32);
-    }
-    Err(format!("{value} is not the index of a vertex"))
-}
-
-fn push_face(items: &[f64], mesh: &mut Mesh) -> Result<(), String> {
-    if items.len() < 3 {
-        return Err(format!("a face of {} corners", items.len()));
-    }
-    let corners = items.iter().map(|v| index(*v)).collect::<Result<Vec<u32>, String>>()?;
-    // Faces may come before vertices; then their range is known at the end only.
-    if let Some(outside) = corners.iter().find(|c| !mesh.positions.is_empty() && **c as usize >= mesh.positions.len()) {
-        return Err(format!("vertex {outside} of {}", mesh.positions.len()));
-    }
-    polygon::triangulate(&corners, &mesh.positions, &mut mesh.triangles);
-    Ok(())
-}
-
-/// Triangle strips; -1 starts a new one.
-fn push_strip(items: &[f64], mesh: &mut Mesh) -> Result<(), String> {
-    for strip in items.split(|v| *v == -1.0) {
-        let corners = strip.iter().map(|v| index(*v)).collect::<Result<Vec<u32>, String>>()?;
-        polygon::unroll_strip(&corners, &mut mesh.triangles);
-    }
-    Ok(())
-}
-
-fn check_indices(mesh: &Mesh) -> Result<(), String> {
-    let outside = |i: &&u32| **i as usize >= mesh.positions.len();
-    match mesh.triangles.iter().flatten().find(outside) {
-        Some(i) => Err(format!("a face refers to vertex {i} of {}", mesh.positions.len())),
-        None => Ok(()),
-    }
 }
