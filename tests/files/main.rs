@@ -4,5 +4,6 @@ mod dialects;
 mod materials;
 mod ply;
 mod polygons;
+mod stl;
 mod support;
 mod surfaces;

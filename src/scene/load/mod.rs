@@ -15,6 +15,7 @@ pub mod ply;
 mod polygon;
 mod range;
 pub mod staging;
+pub mod stl;
 mod stream;
 mod text;
 mod texture_files;
@@ -31,7 +32,7 @@ use std::path::{Path, PathBuf};
 /// Bytes of a scene on standard input at most: text of a size that nobody writes, so an endless stream ends.
 const STDIN_MAX: u64 = 64 << 20;
 
-/// Loads the scene in `path`, its format told by the extension: `.toml`, `.obj`, `.gltf`, `.glb`, `.ply`, `.xml`
+/// Loads the scene in `path`, its format told by the extension: `.toml`, `.obj`, `.gltf`, `.glb`, `.ply`, `.stl`, `.xml`
 /// (Mitsuba); `-` is TOML on standard input, and `NAME:SIZE` may be a built-in scene (`builtin`). What the scene lacks to be
 /// a picture (a mesh has no camera) is staged.
 pub fn load(path: &Path, overrides: &[Override]) -> Result<Scene, SceneError> {
@@ -108,9 +109,10 @@ fn load_file(path: &Path) -> Result<Scene, SceneError> {
         "gltf" | "glb" => gltf::load(path),
         "obj" => obj::load(path),
         "ply" => ply::load(path),
+        "stl" => stl::load(path),
         found => {
             let found = if found.is_empty() { "no extension".to_owned() } else { format!(".{found}") };
-            let message = format!("scene files are .toml, .obj, .gltf, .glb, .ply or .xml, found {found}");
+            let message = format!("scene files are .toml, .obj, .gltf, .glb, .ply, .stl or .xml, found {found}");
             Err(SceneError::bad(Location::file(path), message))
         }
     }

@@ -269,7 +269,7 @@ pub static OBJECT: Section = Section {
         key("noise", Kind::Special("a table"), "all defaults", "The landscape of a heightfield without `file`; its keys are below").only(&["heightfield"]),
         key("triangles", Kind::Integer { min: 1, max: u32::MAX as i64 }, "200000", "About how many: of a terrain from 2 and to 33554432, of a hairball to 33554432, of a field of teapots all together to 4227858432").only(&["terrain", "hairball", "teapots"]),
         key("level", Kind::Integer { min: 0, max: 7 }, "4", "How often spheres carry nine smaller ones: (9^(level + 1) - 1) / 8 analytic spheres").only(&["sphereflake"]),
-        key("file", Kind::Text, "required for a mesh", "mesh: OBJ, PLY, glTF or GLB; heightfield: an image, white is high; relative to the scene file").only(&["mesh", "heightfield"]),
+        key("file", Kind::Text, "required for a mesh", "mesh: OBJ, PLY, STL, glTF or GLB; heightfield: an image, white is high; relative to the scene file").only(&["mesh", "heightfield"]),
         key("normals", Kind::Choice(&["file", "flat", "smooth"]), "`\"file\"`", "The file's own normals, none, or the mean of the faces around each vertex").only(&["mesh"]),
     ],
 };

@@ -158,7 +158,7 @@ impl Objects<'_> {
             return Ok(pieces.clone());
         }
         if key.0.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
-            return Err(table.bad("file", "\"file\" of a mesh must be OBJ, PLY, glTF or GLB, found a TOML scene"));
+            return Err(table.bad("file", "\"file\" of a mesh must be OBJ, PLY, STL, glTF or GLB, found a TOML scene"));
         }
         let mut loaded = load_file(&key.0).map_err(|error| refer(table, "file", error))?;
         for mesh in &mut loaded.meshes {
