@@ -240,11 +240,11 @@ fn broken_gltf_is_refused_with_the_place_in_the_document() {
 }
 
 #[test]
-fn gltf_that_names_a_missing_file_names_it_in_the_error() {
+fn gltf_that_names_a_missing_file_names_it_and_itself_in_the_error() {
     let text = TRIANGLE.replace("data:;base64,AAAA", "not%20there.bin?");
     let message =
         gltf::scene_from_bytes(text.as_bytes(), Path::new("folder/bad.gltf")).expect_err("missing").to_string();
-    assert!(message.starts_with("folder/not there.bin?"), "{message}");
+    assert!(message.starts_with("folder/bad.gltf: buffers[0]: folder/not there.bin?"), "{message}");
 }
 
 #[test]

@@ -472,3 +472,20 @@ fn flaps_lenses_shadows_and_priorities_out_of_range_are_refused() {
     let glass = format!("{LEAST}[[material]]\nname = \"a\"\nmodel = \"dielectric\"\npriority = 256\n");
     refuses(glass, "a.toml:9:12: \"priority\" must be an integer from 0 to 255, found 256");
 }
+
+#[test]
+fn what_single_precision_cannot_carry_is_refused_where_it_is_written() {
+    for (keys, place, name) in [
+        ("translate = [0, 1e11, 0]", "7:13", "sphere.0"),
+        ("scale = 1e-11", "7:9", "sphere.0"),
+        ("radius = 1e11", "5:1", "sphere.0"),
+        ("instances = [{ translate = [0, 0, 1] }, { translate = [1e11, 0, 0] }]", "7:55", "sphere.0[1]"),
+    ] {
+        let text =
+            format!("[camera]\neye = [0, 0, 5]\n[film]\nsize = [4, 4]\n[[object]]\nshape = \"sphere\"\n{keys}\n");
+        let message = try_read(&text, &[]).expect_err(keys).to_string();
+        let expected =
+            format!("a.toml:{place}: object \"{name}\" is too large, too small or too far away: sizes from ");
+        assert!(message.contains(&expected), "{message}\nfor:\n{text}");
+    }
+}

@@ -38,21 +38,13 @@ impl BakedMesh {
     }
 }
 
-/// The power of two that brings `largest` (> 0) into 1..2.
-fn unit_of(largest: f32) -> f64 {
-    let (_, exponent) = libm::frexp(f64::from(largest));
-    libm::ldexp(1.0, exponent - 1)
-}
-
 /// Bakes one mesh. `default_material`: of faces that name none. Triangles with corners that are not numbers or without
 /// area are dropped and counted in `warning`.
 pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId, watch: &Watch) -> Result<BakedMesh, BakeError> {
     check(watch)?;
     let start = Instant::now();
     let finite = |corners: &[u32; 3]| corners.iter().all(|&i| mesh.positions[i as usize].is_finite());
-    let used = mesh.triangles.par_iter().filter(|corners| finite(corners)).flatten_iter();
-    let largest = used.map(|&i| mesh.positions[i as usize].abs().max_element()).reduce(|| 0.0, f32::max);
-    let unit = if largest > 0.0 { unit_of(largest) } else { 1.0 };
+    let unit = mesh.unit();
     let mut baked = BakedMesh { unit, ..BakedMesh::default() };
     let positions: Vec<Vec3> = mesh.positions.par_iter().map(|&p| scaled(p, unit)).collect();
     let corners = |primitive: u32| mesh.triangles[primitive as usize].map(|i| positions[i as usize]);

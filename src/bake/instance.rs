@@ -2,13 +2,11 @@
 
 use super::BakeError;
 use super::bvh::Bounds;
-use crate::scene::Transform;
+use crate::scene::{Transform, WORLD_LIMIT};
 use glam::{DAffine3, DMat3, DVec3, Vec3, Vec4};
 
 /// 2^-24, half the spacing of floats at 1.
 const U: f64 = 1.0 / 16_777_216.0;
-/// World coordinates and sizes of objects must stay within this and one part of it.
-const WORLD_LIMIT: f64 = 1e10;
 
 /// Where an object stands, as the traversal sees it.
 #[derive(Clone, Copy, Debug)]

@@ -49,9 +49,7 @@ pub enum BakeError {
     #[error("a hierarchy of {count} nodes is needed; at most {most} are possible in a mesh", most = places::NODES_MOST)]
     Nodes { count: usize },
     /// A transform that single precision cannot carry.
-    #[error(
-        "object \"{name}\" is too large, too small or too far away: sizes from 1e-10 to 1e10 and coordinates up to 1e10 are possible"
-    )]
+    #[error("object \"{name}\" {limits}", limits = crate::scene::OUT_OF_LIMITS)]
     Placement { name: String },
     /// Cook-Torrance has one or two lobes.
     #[error("material \"{name}\" has {count} lobes; one or two are possible")]

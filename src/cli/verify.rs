@@ -85,6 +85,11 @@ impl VerifyArgs {
 
 fn compare_with_mitsuba(args: &VerifyArgs, folder: &Path) -> anyhow::Result<Vec<Row>> {
     let cases = find_cases(folder).with_context(|| folder.display().to_string())?;
+    if cases.is_empty() {
+        let expected = "NAME_INTEGRATOR.xml with refs/NAME_ref_rgb.exr and refs/NAME_ref_rgb_var.exr, or \
+                        scenes/NAME.xml with images/render/NAME.jpg";
+        return Err(Usage(format!("{}: no scene with a reference; expected {expected}", folder.display())).into());
+    }
     let cases: Vec<&Case> = cases.iter().filter(|case| args.wants(&case.scene.display().to_string())).collect();
     if let Some(keep) = &args.keep {
         std::fs::create_dir_all(keep).with_context(|| keep.display().to_string())?;

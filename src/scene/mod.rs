@@ -27,7 +27,7 @@ pub use settings::{
 };
 pub use table::{DirectionalTable, Table};
 pub use texture::{Pattern, PatternKind, Texture, TextureData, Wrap};
-pub use transform::Transform;
+pub use transform::{OUT_OF_LIMITS, Transform, WORLD_LIMIT};
 
 use glam::Vec3;
 

@@ -12,7 +12,23 @@ impl Default for Transform {
     }
 }
 
+/// Sizes of objects and their coordinates in the world must stay within this and one part of it: beyond, single precision
+/// does not tell their points apart.
+pub const WORLD_LIMIT: f64 = 1e10;
+/// What is wrong with an object beyond it.
+pub const OUT_OF_LIMITS: &str =
+    "is too large, too small or too far away: sizes from 1e-10 to 1e10 and coordinates up to 1e10 are possible";
+
 impl Transform {
+    /// Whether an object stays within `WORLD_LIMIT` whose own coordinates are up to twice `unit`.
+    pub fn is_within_limits(&self, unit: f64) -> bool {
+        let row_sums = |m: &DMat3| [0, 1, 2].map(|i| m.row(i).abs().element_sum()).into_iter().fold(0.0, f64::max);
+        let scaled = self.0.matrix3 * unit;
+        let reach = row_sums(&scaled) * 2.0 + self.0.translation.abs().max_element();
+        let shrink = row_sums(&scaled.inverse());
+        self.0.is_finite() && reach < WORLD_LIMIT && shrink < WORLD_LIMIT
+    }
+
     pub fn translate(v: Vec3) -> Self {
         Self(DAffine3::from_translation(v.as_dvec3()))
     }

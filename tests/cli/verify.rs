@@ -30,3 +30,10 @@ fn nothing_to_verify_is_wrong_usage() {
         assert!(message.contains("named frensel"), "{message}");
     }
 }
+
+#[test]
+fn folder_without_references_is_refused_with_what_was_expected() {
+    let folder = Folder::new();
+    let message = folder.fails(2, &["verify", "--mitsuba", "."]);
+    assert!(message.starts_with("error: .: no scene with a reference; expected NAME_INTEGRATOR.xml"), "{message}");
+}

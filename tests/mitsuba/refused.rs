@@ -82,7 +82,15 @@ fn unknown_properties_are_told_with_the_nearest_and_all_others() {
 fn values_of_the_wrong_type_or_range_are_refused_where_they_stand() {
     for (element, expected) in [
         ("<float name=\"radius\" value=\"wide\"/>", "a.xml:2:50: expected a number, found \"wide\""),
-        ("<float name=\"radius\" value=\"nan\"/>", "a.xml:2:50: expected a number"),
+        ("<float name=\"radius\" value=\"nan\"/>", "a.xml:2:50: expected a number, found \"nan\", which is no number"),
+        (
+            "<float name=\"radius\" value=\"-2e12\"/>",
+            "a.xml:2:50: expected a number, found \"-2e12\"; numbers are at least -1e12",
+        ),
+        (
+            "<transform name=\"to_world\"><translate x=\"1e11\"/></transform>",
+            "a.xml:2:22: object \"sphere\" is too large, too small or too far away: sizes from 1e-10",
+        ),
         ("<float name=\"radius\" value=\"-1\"/>", "a.xml:2:22: \"radius\" must be a number from"),
         ("<string name=\"radius\" value=\"1\"/>", "a.xml:2:22: \"radius\" is a number, found <string>"),
         (

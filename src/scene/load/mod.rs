@@ -110,6 +110,11 @@ fn load_file(path: &Path) -> Result<Scene, SceneError> {
         "obj" => obj::load(path),
         "ply" => ply::load(path),
         "stl" => stl::load(path),
+        _ if path.is_dir() => {
+            let message = "it is a folder; a scene is a file: .toml, .obj, .gltf, .glb, .ply, .stl or .xml";
+            let source = std::io::Error::new(std::io::ErrorKind::IsADirectory, message);
+            Err(SceneError::Io { location: Location::file(path), source })
+        }
         found => {
             let found = if found.is_empty() { "no extension".to_owned() } else { format!(".{found}") };
             let message = format!("scene files are .toml, .obj, .gltf, .glb, .ply, .stl or .xml, found {found}");

@@ -14,12 +14,13 @@ mod texture;
 
 use super::meter;
 use super::staging;
+use super::text::read_bytes;
 use crate::scene::{Location, Material, MaterialId, MeshId, Rgb, Scene, SceneError};
 use accessor::Accessors;
 use gltf::json::Root;
 use source::Buffers;
 use std::collections::{BTreeSet, HashMap};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use texture::Textures;
 
 /// Extensions that are read.
@@ -58,7 +59,7 @@ const FAILURES_MAX: usize = 32;
 
 /// Loads the file as a scene. `load::load` stages what it has no camera or light for.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
-    let bytes = std::fs::read(path).map_err(|source| SceneError::Io { location: Location::file(path), source })?;
+    let bytes = read_bytes(path)?;
     scene_from_bytes(&bytes, path)
 }
 
@@ -77,9 +78,9 @@ enum Failure {
     /// Broken text.
     Json(serde_json::Error),
     /// A file it refers to.
-    Io {
-        file: PathBuf,
-        source: std::io::Error,
+    File {
+        place: String,
+        error: SceneError,
     },
     /// Of another format.
     Other(Box<SceneError>),
@@ -102,7 +103,12 @@ impl Failure {
                 let message = error.to_string();
                 SceneError::bad(location, message.split(" at line ").next().unwrap_or(&message))
             }
-            Self::Io { file, source } => SceneError::Io { location: Location::file(file), source },
+            // The file's own error, with where it is named before it.
+            Self::File { place, error: SceneError::Io { location, source } } => {
+                let source = std::io::Error::new(source.kind(), format!("{place}: {location}: {source}"));
+                SceneError::Io { location: Location::file(path), source }
+            }
+            Self::File { place, error } => SceneError::bad(Location::file(path), format!("{place}: {error}")),
             Self::Other(error) => *error,
             Self::Several(failures) => SceneError::all(failures.into_iter().map(|failure| failure.at(path)).collect()),
         }
@@ -125,6 +131,8 @@ struct Loader<'a> {
     materials: HashMap<Option<usize>, (MaterialId, Option<u32>)>,
     /// Meshes by index and morph weights.
     parts: HashMap<(usize, Vec<u32>), Vec<Part>>,
+    /// `Mesh::unit` of the meshes placed so far.
+    units: HashMap<MeshId, f64>,
     vertices: usize,
 }
 
@@ -132,7 +140,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<Scene, Failure> {
     let (json, binary) = source::split(bytes)?;
     let root = parse(json)?;
     let mut notes = BTreeSet::new();
-    check_version(&root)?;
+    check_version(&root.asset.version, root.asset.min_version.as_deref())?;
     check_extensions(&root, &mut notes)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let buffers = Buffers::read(&root, binary, folder)?;
@@ -145,6 +153,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<Scene, Failure> {
         has_camera: false,
         materials: HashMap::new(),
         parts: HashMap::new(),
+        units: HashMap::new(),
         vertices: 0,
     };
     let nodes = node::flatten(&root)?;
@@ -172,15 +181,20 @@ fn parse(json: &[u8]) -> Result<Root, Failure> {
         Err(error) => error,
     };
     let mut document: serde_json::Value = serde_json::from_slice(json).map_err(Failure::Json)?;
+    // Version 1 was another format: what the `gltf` crate misses in it says nothing.
+    if let Some(version) = document.pointer("/asset/version").and_then(|version| version.as_str()) {
+        check_version(version, None)?;
+    }
     if let Some(animations) = document.get_mut("animations").and_then(|a| a.as_array_mut()) {
         animations.clear();
     }
     serde_json::from_value(document).map_err(|_| Failure::Json(first))
 }
 
-fn check_version(root: &Root) -> Result<(), Failure> {
-    let version = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
-    if version == "2.0" || (root.asset.min_version.is_none() && version.starts_with("2.")) {
+fn check_version(version: &str, least: Option<&str>) -> Result<(), Failure> {
+    let is_known = least.map_or(version.starts_with("2."), |least| least == "2.0");
+    let version = least.unwrap_or(version);
+    if is_known {
         return Ok(());
     }
     Err(Failure::new("asset", format!("version {}; only 2.0 is known", version.escape_debug())))
@@ -266,7 +280,8 @@ impl Loader<'_> {
         self.notes.insert("there is no scene: all meshes are drawn as they are".to_owned());
         for index in 0..self.root.meshes.len() {
             let parts = self.mesh_parts(index, None, "meshes")?;
-            self.add_objects(&parts, &format!("meshes[{index}]"), glam::DAffine3::IDENTITY)?;
+            let place = format!("meshes[{index}]");
+            self.add_objects(&parts, &place, &place, glam::DAffine3::IDENTITY)?;
         }
         Ok(())
     }

@@ -3,7 +3,8 @@
 use super::accessor::Accessors;
 use super::{Failure, Loader, Part};
 use crate::scene::{
-    Attenuation, Camera, Flaps, Geometry, IntensityUnit, Light, LightKind, Object, Projection, Rgb, Transform,
+    Attenuation, Camera, Flaps, Geometry, IntensityUnit, Light, LightKind, OUT_OF_LIMITS, Object, Projection, Rgb,
+    Transform,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec3};
 use gltf::json::camera::Type as CameraType;
@@ -120,7 +121,7 @@ impl Loader<'_> {
             let instances = self.instances(node, &place)?;
             let parts = self.mesh_parts(mesh.value(), node.weights.as_deref(), &place)?;
             for instance in instances {
-                self.add_objects(&parts, &name, world * instance)?;
+                self.add_objects(&parts, &place, &name, world * instance)?;
             }
         }
         if let Some(camera) = node.camera {
@@ -136,7 +137,14 @@ impl Loader<'_> {
         Ok(())
     }
 
-    pub(super) fn add_objects(&mut self, parts: &[Part], name: &str, world: DAffine3) -> Result<(), Failure> {
+    /// Shows `parts` at `world`. `place` is what places them in the document.
+    pub(super) fn add_objects(
+        &mut self,
+        parts: &[Part],
+        place: &str,
+        name: &str,
+        world: DAffine3,
+    ) -> Result<(), Failure> {
         let transform = Transform(world);
         let size = world.matrix3.to_cols_array().iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         // Collapsed to a plane or a point, often to hide it.
@@ -148,6 +156,10 @@ impl Loader<'_> {
             return Err(Failure::new("nodes", format!("more than {OBJECTS_MAX} objects")));
         }
         for (mesh, material) in parts {
+            let unit = self.units.entry(*mesh).or_insert_with(|| self.scene.meshes[mesh.0 as usize].unit());
+            if !transform.is_within_limits(*unit) {
+                return Err(Failure::new(place, format!("object {name:?} {OUT_OF_LIMITS}")));
+            }
             self.scene.objects.push(Object {
                 name: name.to_owned(),
                 geometry: Geometry::Mesh(*mesh),

@@ -1,6 +1,7 @@
 //! The bytes behind a glTF: the two forms of the file, its buffers, and what URIs stand for.
 
 use super::Failure;
+use crate::scene::load::text::read_bytes;
 use base64::Engine;
 use base64::engine::general_purpose::{STANDARD, STANDARD_NO_PAD};
 use gltf::json::{Index, Root, buffer};
@@ -125,12 +126,7 @@ pub(super) fn read_uri(uri: &str, folder: &Path, place: &str) -> Result<Vec<u8>,
         return decode_data(rest).map_err(|message| Failure::new(place, message));
     }
     let path = file_of(uri, folder).map_err(|message| Failure::new(place, message))?;
-    let failure = |source| Failure::Io { file: path.clone(), source };
-    // Devices and pipes have no end.
-    if !std::fs::metadata(&path).map_err(failure)?.is_file() {
-        return Err(Failure::new(place, format!("`{}` is not a file", path.display())));
-    }
-    std::fs::read(&path).map_err(failure)
+    read_bytes(&path).map_err(|error| Failure::File { place: place.to_owned(), error })
 }
 
 /// The file that a relative URI names.

@@ -56,6 +56,8 @@ struct Loader<'a> {
     /// By element, whether a `twosided` is around it, and the mesh whose attributes it shows.
     materials: HashMap<(Node, bool, Option<MeshId>), MaterialId>,
     meshes: HashMap<MeshKey, MeshId>,
+    /// `Mesh::unit` of the meshes placed so far.
+    units: HashMap<MeshId, f64>,
     /// Meshes with attributes that materials show as pictures.
     pictured: HashMap<MeshId, attribute::Pictured>,
     /// The one of them whose material is being made.
@@ -74,6 +76,7 @@ pub fn load(path: &Path, defines: &[(String, String)]) -> Result<Scene, SceneErr
         textures: texture::Textures::default(),
         materials: HashMap::new(),
         meshes: HashMap::new(),
+        units: HashMap::new(),
         pictured: HashMap::new(),
         showing: None,
         environment: None,

@@ -256,7 +256,18 @@ pub fn value(document: &Document, node: Node) -> Result<&str> {
 /// The number that a `<float>` or `<integer>` writes.
 pub fn number(document: &Document, node: Node) -> Result<f64> {
     let text = value(document, node)?;
-    parse(text).ok_or_else(|| document.bad_value(node, "value", format!("expected a number, found {text:?}")))
+    parse(text).ok_or_else(|| document.bad_value(node, "value", no_number(text)))
+}
+
+/// What is wrong with a text that `parse` refuses.
+pub fn no_number(text: &str) -> String {
+    let why = match text.trim().parse::<f64>() {
+        Ok(number) if number.is_nan() => ", which is no number",
+        Ok(number) if number < 0.0 => "; numbers are at least -1e12",
+        Ok(_) => "; numbers are at most 1e12",
+        Err(_) => "",
+    };
+    format!("expected a number, found {text:?}{why}")
 }
 
 /// A finite number of a size that single precision can work with.

@@ -6,7 +6,7 @@ use super::object::Object;
 use super::{Loader, MeshKey, serialized};
 use crate::scene::load::{obj, ply};
 use crate::scene::shape::repair_normals;
-use crate::scene::{Geometry, MaterialId, Mesh, MeshId, Transform};
+use crate::scene::{Geometry, MaterialId, Mesh, MeshId, OUT_OF_LIMITS, Transform};
 use glam::{DAffine3, DMat3, DVec3, Vec2, Vec3};
 use std::f64::consts::TAU;
 
@@ -76,6 +76,14 @@ impl Loader<'_> {
         let material = material?;
         let transform = own.then(shape.transform("to_world")?).then(place);
         let name = self.document.attribute(shape.node, "id").unwrap_or(shape.plugin.name).to_owned();
+        let unit = match geometry {
+            Geometry::Sphere => 1.0,
+            Geometry::Mesh(id) => *self.units.entry(id).or_insert_with(|| self.scene.meshes[id.0 as usize].unit()),
+        };
+        if !transform.is_within_limits(unit) {
+            let at = shape.property("to_world").unwrap_or(shape.node);
+            return Err(self.document.bad(at, format!("object {name:?} {OUT_OF_LIMITS}")));
+        }
         self.scene.objects.push(crate::scene::Object {
             name,
             geometry,

@@ -1,7 +1,7 @@
 //! `<transform>`: steps in the order they are applied; and points.
 
 use super::document::{Document, Node, Result};
-use super::object::{parse, words};
+use super::object::{no_number, parse, words};
 use crate::scene::Transform;
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -54,9 +54,7 @@ pub fn vector(document: &Document, node: Node, default: f64, others: &[&str]) ->
     document.check_attributes(node, &allowed)?;
     let number = |attribute: &str| match document.attribute(node, attribute) {
         None => Ok(default),
-        Some(text) => {
-            parse(text).ok_or_else(|| document.bad_value(node, attribute, format!("expected a number, found {text:?}")))
-        }
+        Some(text) => parse(text).ok_or_else(|| document.bad_value(node, attribute, no_number(text))),
     };
     if document.attribute(node, "value").is_none() {
         return Ok(DVec3::new(number("x")?, number("y")?, number("z")?));

@@ -184,16 +184,18 @@ impl<'a> Statement<'a> {
     pub fn number(&self, word: &[u8]) -> Result<f32, SceneError> {
         match std::str::from_utf8(word).ok().and_then(|text| text.parse::<f32>().ok()) {
             Some(number) if f64::from(number.abs()) <= LARGEST => Ok(number),
-            found => Err(self.no_number(word, found.is_some())),
+            found => Err(self.no_number(word, found)),
         }
     }
 
     #[cold]
-    fn no_number(&self, word: &[u8], is_number: bool) -> SceneError {
+    fn no_number(&self, word: &[u8], found: Option<f32>) -> SceneError {
         let text = decode(word);
-        let message = match is_number {
-            true => format!("{text:?} is not a finite number up to 1e12"),
-            false => format!("expected a number, found {text:?}"),
+        let message = match found {
+            None => format!("expected a number, found {text:?}"),
+            Some(number) if number.is_nan() => format!("{text:?} is NaN, which is no number"),
+            Some(number) if number < 0.0 => format!("{text:?} is too small; numbers are at least -1e12"),
+            Some(_) => format!("{text:?} is too large; numbers are at most 1e12"),
         };
         SceneError::bad(self.location_of(word), message)
     }

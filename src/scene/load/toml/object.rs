@@ -10,7 +10,9 @@ use super::texture::{beside, refer};
 use crate::scene::load::builtin::{Builtin, DEFAULT_LEVEL, TEAPOT_STEPS, teapot_count};
 use crate::scene::load::load_file;
 use crate::scene::shape::{self, compute_smooth_normals};
-use crate::scene::{Geometry, Material, MaterialId, Mesh, MeshId, Model, Object, Scene, Shading, Transform};
+use crate::scene::{
+    Geometry, Material, MaterialId, Mesh, MeshId, Model, OUT_OF_LIMITS, Object, Scene, SceneError, Shading, Transform,
+};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -21,7 +23,14 @@ pub fn read_objects(root: &Reader, materials: &Names, scene: &mut Scene) -> Resu
     if tables.is_empty() {
         return Err(root.bad("object", "the scene has no [[object]]: there is nothing to draw"));
     }
-    let mut objects = Objects { scene, materials, names: Names::new("object"), grey: None, files: HashMap::new() };
+    let mut objects = Objects {
+        scene,
+        materials,
+        names: Names::new("object"),
+        grey: None,
+        files: HashMap::new(),
+        units: HashMap::new(),
+    };
     for (index, table) in tables.iter().enumerate() {
         table.attempt(|| objects.read(table, index));
     }
@@ -43,6 +52,12 @@ fn many(geometry: Geometry, places: Vec<Transform>) -> Vec<Piece> {
     places.into_iter().map(|transform| Piece { name: String::new(), geometry, transform, material: None }).collect()
 }
 
+/// The error for an object that single precision cannot carry, at what places it.
+fn out_of_limits(table: &Reader, name: &str) -> SceneError {
+    let key = ["transform", "matrix", "translate", "scale"].into_iter().find(|key| table.has(key));
+    table.bad(key.unwrap_or("transform"), format!("object {name:?} {OUT_OF_LIMITS}"))
+}
+
 /// How normals of a file are treated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Normals {
@@ -59,6 +74,8 @@ struct Objects<'s> {
     grey: Option<MaterialId>,
     /// Files are read once however many objects show them.
     files: HashMap<(PathBuf, Normals, u64), Vec<Piece>>,
+    /// `Mesh::unit` of the meshes placed so far.
+    units: HashMap<MeshId, f64>,
 }
 
 impl Objects<'_> {
@@ -107,6 +124,9 @@ impl Objects<'_> {
                     name = format!("{name}[{number}]");
                 }
                 let transform = check(table, piece.transform.then(place).then(copy.transform))?;
+                if !transform.is_within_limits(self.unit(piece.geometry)) {
+                    return Err(out_of_limits(copy.table.as_ref().unwrap_or(table), &name));
+                }
                 let material = own.or(material).or(piece.material);
                 let material = material.or_else(|| self.needs_material(piece.geometry).then(|| self.grey()));
                 self.scene.objects.push(Object {
@@ -120,6 +140,13 @@ impl Objects<'_> {
             }
         }
         Ok(())
+    }
+
+    fn unit(&mut self, geometry: Geometry) -> f64 {
+        match geometry {
+            Geometry::Sphere => 1.0,
+            Geometry::Mesh(id) => *self.units.entry(id).or_insert_with(|| self.scene.meshes[id.0 as usize].unit()),
+        }
     }
 
     fn read_material(&self, table: &Reader) -> Result<Option<MaterialId>> {

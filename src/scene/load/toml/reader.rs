@@ -1,7 +1,7 @@
 //! One way to read a key: by name, with the type and range that `keys` gives it.
 
 use super::document::{Document, Entry, Node, Place, Value};
-use super::keys::{Kind, Range, SYNONYMS, Section, list};
+use super::keys::{Kind, LARGEST, Range, SYNONYMS, Section, list};
 use crate::scene::{Rgb, SceneError};
 use glam::Vec3;
 
@@ -55,7 +55,8 @@ impl<'a> Reader<'a> {
     /// The error for a value of the wrong type or out of range.
     pub fn mismatch(&self, key: &str, node: &Node) -> SceneError {
         let allowed = self.section.key(key).map(|key| key.kind.describe()).unwrap_or_default();
-        self.document.bad(node.place, format!("{key:?} must be {allowed}, found {}", node.found()))
+        let found = no_number(node).unwrap_or_else(|| node.found());
+        self.document.bad(node.place, format!("{key:?} must be {allowed}, found {found}"))
     }
 
     /// `value`, or the error that `key` is missing or, if it was written, what is wrong with it.
@@ -215,6 +216,17 @@ impl<'a> Reader<'a> {
             self.document.note(self.mismatch(key, node));
         }
         Ok(value)
+    }
+}
+
+/// The first number in `node` that no key takes, whatever its range.
+fn no_number(node: &Node) -> Option<String> {
+    match (&node.value, node.number()) {
+        (Value::Array(items), _) => items.iter().find_map(no_number),
+        (_, Some(number)) if number.is_nan() => Some("NaN, which is no number".to_owned()),
+        (_, Some(number)) if number > LARGEST => Some(format!("{}; numbers are at most 1e12", node.found())),
+        (_, Some(number)) if number < -LARGEST => Some(format!("{}; numbers are at least -1e12", node.found())),
+        _ => None,
     }
 }
 
