@@ -8,6 +8,7 @@ pub mod bench;
 pub mod cli;
 pub mod film;
 pub mod layout;
+pub mod memory;
 pub mod picture;
 pub mod plot;
 pub mod render;

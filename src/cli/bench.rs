@@ -210,6 +210,7 @@ impl BenchArgs {
             integrator: None,
             max_depth: None,
             panel: None,
+            max_memory: None,
             set: self.set.clone(),
         };
         let mut scene = flags.load(path)?;

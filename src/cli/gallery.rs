@@ -2,7 +2,7 @@
 
 use super::Usage;
 use super::interrupt::Interrupt;
-use super::setup::{BackendFlags, SceneFlags, bake_scene_with, film_of};
+use super::setup::{BackendFlags, SceneFlags, bake_scene_with, check_film, film_of};
 use super::sheet::{self, Sheet};
 use super::team;
 use crate::bake::Baker;
@@ -108,8 +108,10 @@ fn entry_of(path: &Path, folder: &Path, flags: &SceneFlags, backend: &BackendFla
 
 /// All samples of the scene.
 fn film(scene: &Scene, baker: Option<&mut Baker>, backend: &BackendFlags) -> anyhow::Result<Film> {
+    let frame = Rect::whole(scene.film.width, scene.film.height);
+    check_film(frame)?;
     let data = bake_scene_with(scene, baker, &|| false)?;
-    let film = film_of(scene, &data, Rect::whole(scene.film.width, scene.film.height));
+    let film = film_of(scene, &data, frame);
     let session = team::session(backend, &data, film)?;
     session.render(0..scene.settings.samples, &Watch::default())?;
     log::info!("{} on {}", scene.name, session.names().join(" + "));

@@ -177,7 +177,11 @@ fn exit_code(error: &anyhow::Error) -> u8 {
             return EXIT_USAGE;
         }
         if let Some(error) = cause.downcast_ref::<SceneError>() {
-            return if error.is_io() { EXIT_IO } else { EXIT_BAD_INPUT };
+            return match () {
+                _ if error.is_io() => EXIT_IO,
+                _ if error.is_memory() => EXIT_DEVICE,
+                _ => EXIT_BAD_INPUT,
+            };
         }
         if let Some(error) = cause.downcast_ref::<RenderError>() {
             return match error {
@@ -194,6 +198,9 @@ fn exit_code(error: &anyhow::Error) -> u8 {
         }
         if let Some(error) = cause.downcast_ref::<BakeError>() {
             return if matches!(error, BakeError::Aborted) { EXIT_INTERRUPTED } else { EXIT_BAD_INPUT };
+        }
+        if cause.is::<crate::memory::Shortage>() {
+            return EXIT_DEVICE;
         }
         if cause.is::<MergeError>() || cause.is::<strict::Strict>() {
             return EXIT_BAD_INPUT;

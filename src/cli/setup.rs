@@ -3,6 +3,7 @@
 use super::{Usage, progress, strict};
 use crate::bake::{Baker, SceneData, bake_watched};
 use crate::film::{Film, FilmSpec, Rect};
+use crate::memory;
 use crate::render::vulkan::{FetchChoice, VulkanOptions};
 use crate::scene::{Integrator, Scene, Window, load};
 use crate::watch::Watch;
@@ -115,6 +116,10 @@ pub struct SceneFlags {
     /// Give a parameter of a Mitsuba scene a value, as in `spp=64`; may be repeated.
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE")]
     pub define: Vec<Define>,
+    /// Memory that files, pictures and the film may take, as in 900M or 4G; what the machine has free, less a reserve, if
+    /// not given. What takes more is refused (exit code 75).
+    #[arg(long, value_name = "SIZE", value_parser = memory::parse_size)]
+    pub max_memory: Option<u64>,
 }
 
 /// `NAME=VALUE`.
@@ -140,6 +145,7 @@ impl SceneFlags {
 
     /// Opens a scene (`-` is TOML on standard input) with its keys changed by the flags.
     pub fn panels(&self, path: &Path) -> anyhow::Result<load::Panels> {
+        self.max_memory.into_iter().for_each(memory::set_limit);
         let size = self.size.map(|size| format!("film.size=[{},{}]", size.width, size.height));
         let overrides = self
             .set
@@ -274,10 +280,21 @@ pub fn crop_of(scene: &Scene, crop: Option<Crop>) -> anyhow::Result<Rect> {
         None => ("the scene's crop", own.unwrap_or(whole)),
     };
     match whole.contains(&rect) {
-        true => Ok(rect),
+        true => {
+            check_film(rect)?;
+            Ok(rect)
+        }
         // --size may have made the frame smaller.
         false => Err(Usage(format!("{what} {rect} is not inside the frame {whole}")).into()),
     }
+}
+
+/// Bytes a pixel takes: in the film, in what a device gives back, in the picture and in what is encoded of it.
+const PIXEL_BYTES: u64 = 32 + 32 + 16 + 16;
+
+/// An error if there is no memory for the film of `crop`.
+pub fn check_film(crop: Rect) -> Result<(), memory::Shortage> {
+    memory::check(&format!("a film of {} x {} pixels", crop.width, crop.height), crop.area() as u64 * PIXEL_BYTES)
 }
 
 /// An empty film for a scene.

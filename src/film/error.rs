@@ -1,5 +1,6 @@
 //! What can go wrong with films and images, each with the exit code it leads to.
 
+use crate::memory::{self, Shortage};
 use std::io;
 use std::path::Path;
 
@@ -20,20 +21,33 @@ pub enum FilmError {
         file: String,
         source: io::Error,
     },
+    /// It takes more memory than there is.
+    #[error("{file}: {short}")]
+    Memory { file: String, short: Shortage },
 }
 
 impl FilmError {
-    /// Exit code of the program: 2 usage, 65 bad content, 74 cannot read or write.
+    /// Exit code of the program: 2 usage, 65 bad content, 74 cannot read or write, 75 out of memory.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) => 2,
             Self::Bad { .. } => 65,
             Self::Io { .. } => 74,
+            Self::Memory { .. } => 75,
         }
     }
 
     pub(crate) fn bad(file: &Path, message: impl Into<String>) -> Self {
         Self::Bad { file: input_name(file), message: message.into() }
+    }
+
+    /// An error unless there is memory for `bytes` bytes of `what` that the file holds.
+    pub(crate) fn claim(file: &Path, what: &str, bytes: u64) -> Result<(), Self> {
+        memory::check(what, bytes).map_err(|short| Self::short(file, short))
+    }
+
+    pub(crate) fn short(file: &Path, short: Shortage) -> Self {
+        Self::Memory { file: input_name(file), short }
     }
 
     pub(crate) fn read(file: &Path, source: io::Error) -> Self {

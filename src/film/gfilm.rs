@@ -230,6 +230,10 @@ impl Input<'_> {
         while records.len() < count {
             let chunk = &mut bytes[..CHUNK_PIXELS.min(count - records.len()) * size];
             self.take(chunk, what)?;
+            // What a header claims is not believed; what is there is claimed as it comes, since the array doubles.
+            if records.len() == records.capacity() {
+                FilmError::claim(self.file, "the film", (2 * records.len() * size_of::<T>()) as u64)?;
+            }
             records.extend(chunk.chunks_exact(size).map(&record));
         }
         Ok(records)

@@ -41,7 +41,7 @@ impl Window {
 
 /// Reads the picture in `bytes`. `check` is asked about the data window and about what is shown, before memory is taken. The
 /// largest level of mip-mapped files is read, and of several parts and layers the one that `channels` prefers.
-pub fn read(bytes: &[u8], purpose: Purpose, check: SizeCheck) -> Result<Picture, String> {
+pub fn read<E: From<String>>(bytes: &[u8], purpose: Purpose, check: SizeCheck<E>) -> Result<Picture, E> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| explain(&e, bytes))?;
     let choice = choose(&meta.headers, purpose)?;
     let header = &meta.headers[choice.part];
@@ -55,14 +55,15 @@ pub fn read(bytes: &[u8], purpose: Purpose, check: SizeCheck) -> Result<Picture,
     };
     let [width, height] = shown.size();
     if width == 0 || height == 0 {
-        return Err("the data window of this EXR lies outside its display window: there is nothing to see".to_owned());
+        let message = "the data window of this EXR lies outside its display window: there is nothing to see";
+        return Err(message.to_owned().into());
     }
     let [stored_width, stored_height] = stored.size();
     check(stored_width, stored_height)?;
     check(width, height)?;
     // Every chunk has at least an entry in the offset table and a header of its own.
     if meta.headers.iter().any(|header| header.chunk_count.saturating_mul(16) > bytes.len()) {
-        return Err("truncated EXR: fewer bytes than its chunks need".to_owned());
+        return Err("truncated EXR: fewer bytes than its chunks need".to_owned().into());
     }
     let mut canvas = Canvas { shown, stored, pixels: vec![[0.0; 4]; (width * height) as usize] };
     canvas.fill(bytes, &choice).map_err(|e| explain(&e, bytes))?;

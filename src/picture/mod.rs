@@ -29,4 +29,4 @@ pub struct Picture {
 }
 
 /// Refuses a width and height before memory is taken for them.
-pub type SizeCheck<'a> = &'a dyn Fn(u64, u64) -> Result<(), String>;
+pub type SizeCheck<'a, E> = &'a dyn Fn(u64, u64) -> Result<(), E>;

@@ -50,7 +50,7 @@ struct Order {
 }
 
 /// Reads the picture in `bytes`. `check` is asked before memory is taken for it.
-pub fn read(bytes: &[u8], purpose: Purpose, check: SizeCheck) -> Result<Picture, String> {
+pub fn read<E: From<String>>(bytes: &[u8], purpose: Purpose, check: SizeCheck<E>) -> Result<Picture, E> {
     let head = Head::parse(bytes)?;
     let order = head.order;
     check(order.width.into(), order.height.into())?;

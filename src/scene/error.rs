@@ -1,5 +1,6 @@
 //! Errors of scene files, each with its place.
 
+use crate::memory::Shortage;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -37,6 +38,9 @@ pub enum SceneError {
     /// The file cannot be read: exit code 74.
     #[error("{location}: {source}")]
     Io { location: Location, source: std::io::Error },
+    /// It takes more memory than there is: exit code 75.
+    #[error("{location}: {short}")]
+    Memory { location: Location, short: Shortage },
     /// Several of these, in the order of their places; one a line.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
     Several(Vec<SceneError>),
@@ -68,7 +72,7 @@ impl SceneError {
 
     fn location(&self) -> Option<&Location> {
         match self {
-            Self::Bad { location, .. } | Self::Io { location, .. } => Some(location),
+            Self::Bad { location, .. } | Self::Io { location, .. } | Self::Memory { location, .. } => Some(location),
             Self::Several(errors) => errors.first().and_then(Self::location),
         }
     }
@@ -76,9 +80,18 @@ impl SceneError {
     /// Whether all that is wrong is a file that cannot be read.
     pub fn is_io(&self) -> bool {
         match self {
-            Self::Bad { .. } => false,
+            Self::Bad { .. } | Self::Memory { .. } => false,
             Self::Io { .. } => true,
             Self::Several(errors) => errors.iter().all(Self::is_io),
+        }
+    }
+
+    /// Whether all that is wrong is too little memory.
+    pub fn is_memory(&self) -> bool {
+        match self {
+            Self::Bad { .. } | Self::Io { .. } => false,
+            Self::Memory { .. } => true,
+            Self::Several(errors) => errors.iter().all(Self::is_memory),
         }
     }
 }

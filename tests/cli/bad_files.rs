@@ -49,7 +49,16 @@ fn broken_gltf_is_refused_with_the_place_in_the_document() {
     }
     folder.file("bad.gltf", GLTF.replace("data:;base64,AAAA", "gone.bin?"));
     let args = ["render", "bad.gltf", "-o", "a.png", "--backend", "cpu"];
-    refused(&folder, &args, 74, "gone.bin?", "");
+    refused(&folder, &args, 74, "bad.gltf: buffers[0]: gone.bin?", "");
+    let picture = r#""images": [{"uri": "gone.png"}], "textures": [{"source": 0}], "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}], "scene""#;
+    let text = GLTF.replacen("\"scene\"", picture, 1).replace("\"indices\"", "\"material\": 0, \"indices\"");
+    folder.file("bad.gltf", text);
+    refused(&folder, &args, 74, "bad.gltf: images[0]: gone.png: No such file", "");
+    // Version 1 has objects where version 2 has lists.
+    folder.file("bad.gltf", r#"{"asset": {"version": "1.0"}, "meshes": {"a": {}}, "scenes": {"b": {}}}"#);
+    scene_refused(&folder, "bad.gltf", "bad.gltf: asset: ", "version 1.0; only 2.0 is known");
+    folder.file("bad.gltf", GLTF.replace(r#"{"mesh": 0}"#, r#"{"mesh": 0, "scale": [1e-20, 1e-20, 1e-20]}"#));
+    scene_refused(&folder, "bad.gltf", "bad.gltf: nodes[0]: object \"nodes[0]\" is too large, too small", "1e10");
 }
 
 #[test]
@@ -130,6 +139,10 @@ fn names_that_are_no_scene_are_refused() {
     std::fs::create_dir(folder.path("folder.obj")).expect("a new folder");
     scene_refused(&folder, "scene.xyz", "scene.xyz: ", "found .xyz");
     scene_refused(&folder, "scene", "scene: ", "no extension");
+    std::fs::create_dir(folder.path("folder")).expect("a new folder");
+    let render = |name: &'static str| ["render", name, "-o", "a.png", "--backend", "cpu"];
+    refused(&folder, &render("folder"), 74, "folder: it is a folder; a scene is a file: .toml", "");
+    refused(&folder, &render("folder.obj"), 74, "folder.obj: it is a folder", "");
     for absent in ["absent.toml", "absent.obj", "absent.ply", "absent.gltf", "absent.glb", "folder.obj"] {
         refused(&folder, &["render", absent, "-o", "a.png", "--backend", "cpu"], 74, absent, "");
     }
@@ -141,4 +154,61 @@ fn endless_film_is_refused_without_being_read_to_its_end() {
     let folder = Folder::new();
     refused(&folder, &["merge", "/dev/zero", "-o", "a.png"], 65, "/dev/zero", "");
     refused(&folder, &["compare", "/dev/zero", "/dev/zero"], 65, "/dev/zero", "");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_a_scene_names_and_is_no_regular_file_is_refused_unread() {
+    let folder = Folder::new();
+    // Nobody writes to it: who opens it waits for ever.
+    let made = std::process::Command::new("mkfifo").arg(folder.path("pipe")).status().expect("mkfifo");
+    assert!(made.success());
+    for alias in ["pipe.toml", "pipe.obj", "pipe.ply", "pipe.gltf", "pipe.xml", "pipe.png"] {
+        std::os::unix::fs::symlink("pipe", folder.path(alias)).expect("a link");
+    }
+    let render = |scene: &'static str| ["render", scene, "-o", "a.png", "--backend", "cpu"];
+    for scene in ["pipe.toml", "pipe.obj", "pipe.ply", "pipe.gltf", "pipe.xml"] {
+        refused(&folder, &render(scene), 74, scene, "no regular file");
+    }
+    let color = "color = [0.8, 0.1, 0.1]";
+    for (from, to) in [
+        (color, "texture = \"pipe.png\""),
+        (color, "texture = \"/dev/zero\""),
+        ("shape = \"sphere\"", "shape = \"mesh\"\nfile = \"pipe.obj\""),
+        ("shape = \"sphere\"", "shape = \"mesh\"\nfile = \"pipe.ply\""),
+    ] {
+        let text = SCENE.replacen(from, to, 1);
+        assert_ne!(text, SCENE, "{from}");
+        folder.file("a.toml", text);
+        refused(&folder, &render("a.toml"), 74, "a.toml:", "no regular file");
+    }
+    folder.file(
+        "b.gltf",
+        GLTF.replacen("data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA", "pipe", 1),
+    );
+    refused(&folder, &render("b.gltf"), 74, "b.gltf: buffers[0]: pipe: ", "no regular file");
+    // Standard input is meant to be a pipe.
+    let mut piped = folder.command(&["render", "-", "-o", "a.png", "--backend", "cpu"]);
+    assert_eq!(super::support::ended(piped.write_stdin(SCENE)).code, Some(0));
+}
+
+#[test]
+fn what_takes_more_memory_than_there_is_exits_with_75() {
+    let folder = Folder::new();
+    let film = ["render", "scene.toml", "-o", "a.png", "--backend", "cpu", "--size", "65535x65535"];
+    refused(&folder, &film, 75, "a film of 65535 x 65535 pixels takes 384.0 GiB; ", "--max-memory");
+    // A part of the same frame is small.
+    folder.done(&[&film[..], &["--crop", "0,0,8,8", "--spp", "1"]].concat());
+    let parity = ["parity", "scene.toml", "--between", "cpu,cpu", "--size", "65535x65535"];
+    refused(&folder, &parity, 75, "a film of 65535 x 65535 pixels", "");
+    std::fs::create_dir(folder.path("scenes")).expect("a new folder");
+    folder.file("scenes/a.toml", SCENE);
+    let gallery = ["render", "--gallery", "scenes", "-o", "page", "--backend", "cpu", "--size", "65535x65535"];
+    refused(&folder, &gallery, 75, "a film of 65535 x 65535 pixels", "");
+    let little = ["render", "scene.toml", "-o", "a.png", "--backend", "cpu", "--max-memory", "1K"];
+    refused(&folder, &little, 75, "scene.toml: the file takes ", "1.0 KiB are left");
+    folder.done(&["render", "scene.toml", "-o", "a.png", "--backend", "cpu", "--max-memory", "1G"]);
+    let message = folder.fails(2, &["render", "scene.toml", "--max-memory", "much"]);
+    assert!(message.contains("as in 900M"), "{message}");
+    assert!(!folder.names().iter().any(|name| name.ends_with(".part")), "{:?}", folder.names());
 }

@@ -1,6 +1,8 @@
 //! Pictures as textures: PNG, JPEG, WebP, BMP, PNM and (by the file's name) TGA through `image`, OpenEXR and Radiance HDR
 //! through `picture`.
 
+use super::text::read_bytes;
+use crate::memory::{self, Shortage};
 use crate::picture::{self, Purpose};
 use crate::scene::{Location, SceneError, Texture, TextureData};
 use image::{DynamicImage, ImageDecoder, ImageReader};
@@ -32,8 +34,10 @@ impl ColorSpace {
 const SIDE_MAX: u32 = 65_535;
 /// Texels of a picture (16,384 x 8,192); a file that claims more is refused before memory is taken.
 const TEXELS_MAX: u64 = 1 << 27;
+/// Bytes of a texel of floats.
+const TEXEL_BYTES: u64 = 16;
 /// What a decoder may take.
-const DECODED_BYTES_MAX: u64 = TEXELS_MAX * 16;
+const DECODED_BYTES_MAX: u64 = TEXELS_MAX * TEXEL_BYTES;
 
 /// Reads the texture in the file `path`. The texture repeats, is filtered, and is not scaled.
 pub fn load_texture(path: &Path, space: ColorSpace) -> Result<Texture, SceneError> {
@@ -42,8 +46,7 @@ pub fn load_texture(path: &Path, space: ColorSpace) -> Result<Texture, SceneErro
 
 /// The same, of EXR and HDR files with another purpose.
 pub fn load_texture_for(path: &Path, space: ColorSpace, purpose: Purpose) -> Result<Texture, SceneError> {
-    let bytes = std::fs::read(path).map_err(|source| SceneError::Io { location: Location::file(path), source })?;
-    read_texture(&bytes, path, space, purpose)
+    read_texture(&read_bytes(path)?, path, space, purpose)
 }
 
 /// Reads a texture from the bytes of a picture; `name` is its file, or what stands for one in messages.
@@ -61,20 +64,35 @@ fn read_texture(bytes: &[u8], name: &Path, space: ColorSpace, purpose: Purpose) 
     } else {
         decode(bytes, name, space)
     };
-    let (width, height, data) = read.map_err(|message| SceneError::bad(Location::file(name), message))?;
+    let (width, height, data) = read.map_err(|fault| match fault {
+        Fault::Bad(message) => SceneError::bad(Location::file(name), message),
+        Fault::Memory(short) => SceneError::Memory { location: Location::file(name), short },
+    })?;
     Ok(Texture::new(name.display().to_string(), width, height, data))
 }
 
-fn decode(bytes: &[u8], name: &Path, space: ColorSpace) -> Result<(u32, u32, TextureData), String> {
+/// Why a picture is none.
+enum Fault {
+    Bad(String),
+    Memory(Shortage),
+}
+
+impl From<String> for Fault {
+    fn from(message: String) -> Self {
+        Self::Bad(message)
+    }
+}
+
+fn decode(bytes: &[u8], name: &Path, space: ColorSpace) -> Result<(u32, u32, TextureData), Fault> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     // Nothing in a TGA file says that it is one.
     if reader.format().is_none() && name.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("tga")) {
         reader.set_format(image::ImageFormat::Tga);
     }
     if reader.format().is_none() {
-        return Err("not a picture in PNG, JPEG, HDR, WebP, BMP, PNM, TGA or EXR format".to_owned());
+        return Err("not a picture in PNG, JPEG, HDR, WebP, BMP, PNM, TGA or EXR format".to_owned().into());
     }
-    let readable = |e: image::ImageError| format!("cannot decode the picture: {e}");
+    let readable = |e: image::ImageError| Fault::Bad(format!("cannot decode the picture: {e}"));
     let mut decoder = reader.into_decoder().map_err(readable)?;
     let (width, height) = decoder.dimensions();
     check_size(u64::from(width), u64::from(height))?;
@@ -85,15 +103,16 @@ fn decode(bytes: &[u8], name: &Path, space: ColorSpace) -> Result<(u32, u32, Tex
     Ok((width, height, texels(picture, space)))
 }
 
-fn check_size(width: u64, height: u64) -> Result<(), String> {
+/// Refuses what is too large, and claims memory for the rest: decoded, as a decoder has it beside.
+fn check_size(width: u64, height: u64) -> Result<(), Fault> {
     let side = 1..=u64::from(SIDE_MAX);
     if !side.contains(&width) || !side.contains(&height) {
-        return Err(format!("a picture of {width} x {height}; allowed are 1 to {SIDE_MAX} each way"));
+        return Err(format!("a picture of {width} x {height}; allowed are 1 to {SIDE_MAX} each way").into());
     }
     if width * height > TEXELS_MAX {
-        return Err(format!("a picture of {width} x {height}; allowed are {TEXELS_MAX} texels"));
+        return Err(format!("a picture of {width} x {height}; allowed are {TEXELS_MAX} texels").into());
     }
-    Ok(())
+    memory::check("the picture", width * height * 2 * TEXEL_BYTES).map_err(Fault::Memory)
 }
 
 fn texels(picture: DynamicImage, space: ColorSpace) -> TextureData {

@@ -1,7 +1,7 @@
 //! A file read piece by piece: a mesh of any size is read without its file lying in memory beside it.
 
+use super::text::open_file;
 use crate::scene::{Location, SceneError};
-use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::ops::Range;
 use std::path::Path;
@@ -27,9 +27,8 @@ pub struct Stream<'a> {
 
 impl<'a> Stream<'a> {
     pub fn open(path: &Path) -> Result<Self, SceneError> {
-        let file = File::open(path).and_then(|file| Ok((file.metadata()?, file)));
-        let (about, file) = file.map_err(|error| failed(path, error))?;
-        Ok(Self::new(Box::new(file), about.is_file().then_some(about.len())))
+        let (file, size) = open_file(path).map_err(|error| failed(path, error))?;
+        Ok(Self::new(Box::new(file), Some(size)))
     }
 
     pub fn of(bytes: &'a [u8]) -> Self {

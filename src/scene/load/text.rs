@@ -1,6 +1,8 @@
-//! What all text formats share: reading a file and finding a place in it.
+//! What all formats share: reading a file that a scene names, and finding a place in a text.
 
 use crate::scene::{Location, SceneError};
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 /// Line and column of a byte offset, both from 1; columns count characters.
@@ -16,9 +18,42 @@ pub fn line_and_column(text: &str, offset: usize) -> (u32, u32) {
     (u32::try_from(line).unwrap_or(u32::MAX), u32::try_from(column).unwrap_or(u32::MAX))
 }
 
-/// The bytes of `path`, or an error that names it.
+/// The file `path`, opened, and its size in bytes. Regular files only: devices and pipes have no end, and opening one may wait
+/// for ever.
+pub fn open_file(path: &Path) -> io::Result<(File, u64)> {
+    check_kind(path)?;
+    let file = File::open(path)?;
+    let size = file.metadata()?.len();
+    Ok((file, size))
+}
+
+/// The bytes of the file `path` (`open_file`), or an error that names it. Their size is claimed from the budget
+/// (`crate::memory`) first, and no more is read.
 pub fn read_bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
-    std::fs::read(path).map_err(|source| SceneError::Io { location: Location::file(path), source })
+    let failed = |source| SceneError::Io { location: Location::file(path), source };
+    let (file, size) = open_file(path).map_err(failed)?;
+    crate::memory::check("the file", size)
+        .map_err(|short| SceneError::Memory { location: Location::file(path), short })?;
+    let mut bytes = Vec::new();
+    bytes
+        .try_reserve_exact(size as usize)
+        .map_err(|error| failed(io::Error::new(io::ErrorKind::OutOfMemory, error)))?;
+    // One byte more, for what grows meanwhile.
+    file.take(size + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 != size {
+        return Err(failed(io::Error::other("the file changed while it was read")));
+    }
+    Ok(bytes)
+}
+
+/// Refuses what is there but no regular file, without opening it.
+fn check_kind(path: &Path) -> io::Result<()> {
+    let kind = std::fs::metadata(path)?.file_type();
+    match () {
+        _ if kind.is_file() => Ok(()),
+        _ if kind.is_dir() => Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder, not a file")),
+        _ => Err(io::Error::other("it is no regular file (a device, a pipe or the like)")),
+    }
 }
 
 /// `bytes` as UTF-8 without a byte order mark; `file` is their name in messages.

@@ -15,6 +15,7 @@ mod texture;
 use super::meter;
 use super::staging;
 use super::text::read_bytes;
+use crate::memory::Shortage;
 use crate::scene::{Location, Material, MaterialId, MeshId, Rgb, Scene, SceneError};
 use accessor::Accessors;
 use gltf::json::Root;
@@ -107,6 +108,10 @@ impl Failure {
             Self::File { place, error: SceneError::Io { location, source } } => {
                 let source = std::io::Error::new(source.kind(), format!("{place}: {location}: {source}"));
                 SceneError::Io { location: Location::file(path), source }
+            }
+            Self::File { place, error: SceneError::Memory { location, short } } => {
+                let what = format!("{place}: {location}: {}", short.what);
+                SceneError::Memory { location: Location::file(path), short: Shortage { what, ..short } }
             }
             Self::File { place, error } => SceneError::bad(Location::file(path), format!("{place}: {error}")),
             Self::Other(error) => *error,
