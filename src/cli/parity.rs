@@ -1,11 +1,14 @@
 //! `gonio parity`: the same samples on two backends, bit for bit.
 
-use super::setup::{BackendFlags, BackendName, FetchName, SceneFlags, bake_scene_with, film_of, thread_count};
+use super::setup::{
+    BackendFlags, BackendName, FetchName, SceneFlags, Size, bake_scene_with, check_film, film_of, thread_count,
+};
 use super::sheet::Sheet;
 use super::{EXIT_DIFFERS, Usage, render, team};
 use crate::bake::{Baker, SceneData};
 use crate::film::{Film, Rect};
 use crate::render::session::Session;
+use crate::render::vulkan::{DeviceChoice, Instance, check_fit};
 use crate::render::{Bounce, RenderError};
 use crate::scene::Scene;
 use crate::watch::Watch;
@@ -20,10 +23,10 @@ use std::str::FromStr;
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  gonio parity scenes/*.toml                              cpu against the Vulkan device, both fetch paths
+  gonio parity scenes/*.toml                              cpu against the Vulkan device, both fetch paths if it has both
   gonio parity scene.toml --between vulkan:0,vulkan:1     two devices
   gonio parity scene.toml --json > here.json              hashes, for another machine
-  gonio parity scene.toml --expect here.json              against hashes from another machine
+  gonio parity scene.toml --expect here.json              against hashes from another machine, as rendered there
 Exit code 0: every bit agrees. 1: something differs.")]
 pub struct ParityArgs {
     /// Scenes, as for render.
@@ -33,7 +36,8 @@ pub struct ParityArgs {
     /// Default: cpu, and the Vulkan device with each fetch path.
     #[arg(long, value_name = "A,B", value_delimiter = ',')]
     between: Vec<Contender>,
-    /// Compare film hashes with those recorded in this file (as `--json` writes them) too.
+    /// Compare film hashes with those recorded in this file (as `--json` writes them) too. Size, samples and seed are those
+    /// of the record unless they are given.
     #[arg(long, value_name = "FILE.json")]
     expect: Option<PathBuf>,
     /// Print the result as JSON.
@@ -101,6 +105,9 @@ struct SceneResult {
     seed: u32,
     film_hash: String,
     comparisons: Vec<Comparison>,
+    /// Which of the device's ways to fetch could not be compared, and why.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    left_out: Vec<String>,
 }
 
 #[derive(serde::Serialize)]
@@ -131,20 +138,23 @@ pub fn run(args: &ParityArgs, _quiet: bool) -> anyhow::Result<ExitCode> {
     let mut results = Vec::new();
     let mut agree = true;
     for path in &args.scenes {
-        let sheet = Sheet::open(&args.scene_flags, path)?;
-        let mut baker = sheet.is_divided().then(Baker::default);
-        for scene in sheet.scenes() {
-            let (label, scene) = scene?;
-            let data = bake_scene_with(&scene, baker.as_mut(), &|| false)?;
-            let result = args.compare_scene(path, label, &scene, &data, &contenders)?;
-            agree &= result.comparisons.iter().all(|comparison| comparison.differ == 0);
-            if !args.json {
-                print_result(&result)?;
+        for flags in args.takes(path, expected.as_ref())? {
+            let sheet = Sheet::open(&flags, path)?;
+            let mut baker = sheet.is_divided().then(Baker::default);
+            for scene in sheet.scenes() {
+                let (label, scene) = scene?;
+                check_film(Rect::whole(scene.film.width, scene.film.height))?;
+                let data = bake_scene_with(&scene, baker.as_mut(), &|| false)?;
+                let result = args.compare_scene(path, label, &scene, &data, &contenders)?;
+                agree &= result.comparisons.iter().all(|comparison| comparison.differ == 0);
+                if !args.json {
+                    print_result(&result)?;
+                }
+                if let Some(expected) = &expected {
+                    agree &= check_expected(&result, expected, args.json)?;
+                }
+                results.push(result);
             }
-            if let Some(expected) = &expected {
-                agree &= check_expected(&result, expected, args.json)?;
-            }
-            results.push(result);
         }
     }
     if args.json {
@@ -184,6 +194,44 @@ impl ParityArgs {
         list.into_iter().map(complete).collect()
     }
 
+    /// How the scene in `path` is to be rendered: as the flags say, and in what they leave open as it was recorded.
+    fn takes(&self, path: &Path, expected: Option<&Expected>) -> anyhow::Result<Vec<SceneFlags>> {
+        let flags = &self.scene_flags;
+        // Standard input can be read once.
+        let Some(expected) = expected.filter(|_| path != Path::new("-")) else { return Ok(vec![flags.clone()]) };
+        let labels = flags.panels(path)?.labels().to_vec();
+        let panels: Vec<Option<String>> = match &flags.panel {
+            Some(panel) => vec![Some(panel.clone())],
+            None if labels.is_empty() => vec![None],
+            None => labels.iter().cloned().map(Some).collect(),
+        };
+        let mut takes = Vec::new();
+        for panel in panels {
+            // `--panel` takes a number, too.
+            let number = panel.as_ref().and_then(|panel| panel.parse::<usize>().ok());
+            let label = panel.as_ref().filter(|panel| labels.contains(panel)).or(number.and_then(|n| labels.get(n)));
+            let recorded = expected.takes.iter().filter(|take| {
+                take.scene == file_name(path)
+                    && take.panel.as_ref() == label
+                    && flags.size.is_none_or(|size| size == take.size)
+                    && flags.spp.is_none_or(|spp| spp == take.samples)
+                    && flags.seed.is_none_or(|seed| seed == take.seed)
+            });
+            let before = takes.len();
+            takes.extend(recorded.map(|take| SceneFlags {
+                size: Some(take.size),
+                spp: Some(take.samples),
+                seed: Some(take.seed),
+                panel: panel.clone(),
+                ..flags.clone()
+            }));
+            if takes.len() == before {
+                takes.push(SceneFlags { panel, ..flags.clone() });
+            }
+        }
+        Ok(takes)
+    }
+
     fn compare_scene(
         &self,
         path: &Path,
@@ -192,6 +240,7 @@ impl ParityArgs {
         data: &SceneData,
         contenders: &[Contender],
     ) -> anyhow::Result<SceneResult> {
+        let (contenders, left_out) = self.that_can(contenders, data);
         let reference = render_all(&contenders[0].flags, scene, data)?;
         let film = reference.snapshot();
         let mut comparisons = Vec::new();
@@ -215,7 +264,31 @@ impl ParityArgs {
             seed: scene.settings.seed,
             film_hash: film.hash().to_string(),
             comparisons,
+            left_out,
         })
+    }
+
+    /// Where nobody said what to compare: the contenders whose device can hold the scene, if one can, and of the others the
+    /// reason.
+    fn that_can<'a>(&self, contenders: &'a [Contender], data: &SceneData) -> (Vec<&'a Contender>, Vec<String>) {
+        let all = || contenders.iter().collect();
+        if !self.between.is_empty() || self.fetch != FetchName::Auto {
+            return (all(), Vec::new());
+        }
+        let Ok(choice) = self.device.as_deref().unwrap_or("auto").parse::<DeviceChoice>();
+        let Ok(devices) = Instance::new(false).and_then(|instance| instance.devices()) else {
+            return (all(), Vec::new()); // opening the device says what is wrong
+        };
+        let Ok(info) = choice.pick(&devices) else { return (all(), Vec::new()) };
+        let (mut able, mut left_out) = (Vec::new(), Vec::new());
+        for contender in contenders {
+            let fits = contender.flags.backend == BackendName::Cpu
+                || check_fit(info, data, contender.flags.fetch.into())
+                    .map_err(|error| left_out.push(format!("{} left out: {error}", contender.label)))
+                    .is_ok();
+            able.extend(fits.then_some(contender));
+        }
+        if able.len() < 2 { (all(), Vec::new()) } else { (able, left_out) }
     }
 }
 
@@ -293,16 +366,40 @@ fn print_result(result: &SceneResult) -> std::io::Result<()> {
             writeln!(out, "  first at {},{}: {}", first.x, first.y, first.cause)?;
         }
     }
+    for reason in &result.left_out {
+        writeln!(out, "{}{}: {reason}", result.scene, panel_suffix(result.panel.as_deref()))?;
+    }
     Ok(())
 }
 
-/// Film hashes by scene file name, panel, size, samples and seed.
-type Expected = BTreeMap<String, String>;
+/// What was recorded.
+struct Expected {
+    /// Film hashes by `Take::key`.
+    hashes: BTreeMap<String, String>,
+    takes: Vec<Take>,
+}
 
-fn key(scene: &str, panel: Option<&str>, width: u64, height: u64, samples: u64, seed: u64) -> String {
-    let name =
-        Path::new(scene).file_name().map_or_else(|| scene.to_owned(), |name| name.to_string_lossy().into_owned());
-    format!("{name}{} at {width}x{height}, {}, seed {seed}", panel_suffix(panel), counted(samples))
+/// How a scene was rendered.
+#[derive(Clone, PartialEq)]
+struct Take {
+    /// The file's name without its folder.
+    scene: String,
+    panel: Option<String>,
+    size: Size,
+    samples: u32,
+    seed: u32,
+}
+
+impl Take {
+    fn key(&self) -> String {
+        let Self { scene, size, samples, seed, .. } = self;
+        let panel = panel_suffix(self.panel.as_deref());
+        format!("{scene}{panel} at {}x{}, {}, seed {seed}", size.width, size.height, counted((*samples).into()))
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
 /// Reads what `--json` wrote.
@@ -312,26 +409,38 @@ fn read_expected(path: &Path) -> anyhow::Result<Expected> {
     let document: serde_json::Value = serde_json::from_str(&text).map_err(|error| bad(&error.to_string()))?;
     let scenes = document["scenes"].as_array().ok_or_else(|| bad("no list \"scenes\""))?;
     let entry = |scene: &serde_json::Value| {
-        let number = |name: &str| scene[name].as_u64();
-        let key = key(
-            scene["scene"].as_str()?,
-            scene["panel"].as_str(),
-            number("width")?,
-            number("height")?,
-            number("samples")?,
-            number("seed")?,
-        );
-        Some((key, scene["film_hash"].as_str()?.to_owned()))
+        let number = |name: &str| u32::try_from(scene[name].as_u64()?).ok();
+        let take = Take {
+            scene: file_name(Path::new(scene["scene"].as_str()?)),
+            panel: scene["panel"].as_str().map(str::to_owned),
+            size: Size { width: number("width")?, height: number("height")? },
+            samples: number("samples")?,
+            seed: number("seed")?,
+        };
+        Some((take, scene["film_hash"].as_str()?.to_owned()))
     };
-    scenes.iter().map(|scene| entry(scene).ok_or_else(|| bad("an entry of \"scenes\" lacks a member").into())).collect()
+    let mut expected = Expected { hashes: BTreeMap::new(), takes: Vec::new() };
+    for scene in scenes {
+        let (take, hash) = entry(scene).ok_or_else(|| bad("an entry of \"scenes\" lacks a member"))?;
+        expected.hashes.insert(take.key(), hash);
+        if !expected.takes.contains(&take) {
+            expected.takes.push(take);
+        }
+    }
+    Ok(expected)
 }
 
 /// Whether the reference film has the recorded hash; an unrecorded scene is a difference.
 fn check_expected(result: &SceneResult, expected: &Expected, quiet: bool) -> std::io::Result<bool> {
-    let panel = result.panel.as_deref();
-    let key =
-        key(&result.scene, panel, result.width.into(), result.height.into(), result.samples.into(), result.seed.into());
-    let (line, same) = match expected.get(&key) {
+    let key = Take {
+        scene: file_name(Path::new(&result.scene)),
+        panel: result.panel.clone(),
+        size: Size { width: result.width, height: result.height },
+        samples: result.samples,
+        seed: result.seed,
+    }
+    .key();
+    let (line, same) = match expected.hashes.get(&key) {
         Some(hash) if *hash == result.film_hash => (format!("{key}: the recorded hash"), true),
         Some(hash) => (format!("{key}: hash {} differs from the recorded {hash}", result.film_hash), false),
         None => (format!("{key}: no hash recorded"), false),

@@ -47,6 +47,32 @@ fn recorded_hashes_are_met_again() {
 }
 
 #[test]
+fn what_was_recorded_is_rendered_as_it_was() {
+    let folder = Folder::new();
+    let recorded =
+        ["parity", "scene.toml", "--between", "cpu,cpu", "--json", "--size", "8x6", "--spp", "3", "--seed", "7"];
+    folder.file("expect.json", folder.done(&recorded));
+    let out = folder.done(&["parity", "scene.toml", "--between", "cpu", "--expect", "expect.json"]);
+    assert_eq!(out, "scene.toml at 8x6, 3 samples, seed 7: the recorded hash\n");
+    // What is given counts.
+    let args = ["parity", "scene.toml", "--between", "cpu", "--expect", "expect.json", "--spp", "2"];
+    let ended = folder.run(&args);
+    assert_eq!(
+        (ended.code, ended.text()),
+        (Some(1), "scene.toml at 32x24, 2 samples, seed 0: no hash recorded\n".into())
+    );
+    // Every way in which it was recorded.
+    let mut twice: serde_json::Value = serde_json::from_slice(&folder.bytes("expect.json")).expect("JSON");
+    let other: serde_json::Value =
+        serde_json::from_str(&folder.done(&["parity", "scene.toml", "--between", "cpu,cpu", "--json"])).expect("JSON");
+    twice["scenes"].as_array_mut().expect("a list").push(other["scenes"][0].clone());
+    folder.file("expect.json", twice.to_string());
+    let out = folder.done(&["parity", "scene.toml", "--between", "cpu", "--expect", "expect.json"]);
+    assert_eq!(out.lines().count(), 2, "{out}");
+    assert!(out.contains("8x6") && out.contains("32x24"), "{out}");
+}
+
+#[test]
 fn film_hash_of_parity_is_that_of_render() {
     let folder = Folder::new();
     let document = record(&folder);
