@@ -317,9 +317,12 @@ fn dust() -> impl Iterator<Item = f32> {
     floats(f32::from_bits(1), 2.0 * TINY, 65_521).flat_map(|x| [x, -x])
 }
 
+type One = fn(f32) -> f32;
+type Two = fn(f32, f32) -> f32;
+
 #[test]
 fn no_function_makes_a_subnormal_number_or_tells_one_from_zero() {
-    let ones: [(&str, fn(f32) -> f32); 14] = [
+    let ones: [(&str, One); 14] = [
         ("rcp", rcp),
         ("rsqrt", rsqrt),
         ("sqrt_", sqrt_),
@@ -342,7 +345,7 @@ fn no_function_makes_a_subnormal_number_or_tells_one_from_zero() {
             assert!(!x.is_subnormal() || result == function(0.0), "{name}({x:e}) is {result:e}, not as for 0");
         }
     }
-    let twos: [(&str, fn(f32, f32) -> f32); 3] = [("div", div), ("pow_", pow_), ("atan2_", atan2_)];
+    let twos: [(&str, Two); 3] = [("div", div), ("pow_", pow_), ("atan2_", atan2_)];
     for (name, function) in twos {
         for x in dust().chain(WILD) {
             for other in [1e-38, 1e-20, 0.3, 1.0, 7.0, 1e20, -2.0] {
