@@ -37,8 +37,8 @@ fn sky(width: u32, height: u32, texels: Vec<[f32; 4]>, turn: f64) -> SceneData {
         scale: [1.0; 2],
         offset: [0.0; 2],
         mipmap: false,
-        shear: [0.0; 2],
         extrapolated: false,
+        shear: [0.0; 2],
     }];
     let to_world = Transform::rotate(Vec3::new(0.2, 1.0, -0.4), turn);
     scene.background = Background::Image(Environment { texture: TextureId(0), scale: Rgb::splat(0.5), to_world });

@@ -257,8 +257,8 @@ fn sky_texture(width: u32, height: u32, data: TextureData) -> Texture {
         scale: [1.0; 2],
         offset: [0.0; 2],
         mipmap: false,
-        shear: [0.0; 2],
         extrapolated: false,
+        shear: [0.0; 2],
     }
 }
 

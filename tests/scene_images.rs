@@ -240,6 +240,9 @@ fn float_images_keep_the_range_of_what_they_are_bound_to_in_every_format() {
     );
     let scene = folder.load("a.toml", &format!("{TOML}[background]\nimage = \"neg.exr\"\n"));
     assert_eq!(folder.warnings(&scene), [light]);
+    // A file with no number in it is one texture, however many ask for it.
+    let two = format!("{TOML}texture = \"neg.exr\"\n[[material]]\nname = \"n\"\ntexture = \"neg.exr\"\n");
+    assert_eq!(folder.load("a.toml", &two).textures.len(), 1);
     // Heights may be anything that is a number.
     let scene = folder.load("a.toml", &format!("{TOML}bump_map = \"neg.exr\"\n"));
     assert_eq!(bound(&scene, 0, Parameter::Bump), [-1.0, 2.0, 0.5, 0.0]);

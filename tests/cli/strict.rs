@@ -10,7 +10,7 @@ fn warnings_of_loading_are_errors_under_strict_for_every_command() {
         &["render", "warned.toml", "-o", "a.png", "--backend", "cpu"],
         &["parity", "warned.toml", "--between", "cpu,cpu"],
         &["bench", "warned.toml", "--on", "cpu", "--rays", "16", "--runs", "1"],
-        &["plot", "lobes", "warned.toml", "-o", "b.svg"],
+        &["plot", "lobe", "warned.toml", "-o", "b.svg"],
     ];
     for command in commands {
         folder.done(command);

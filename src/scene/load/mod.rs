@@ -26,6 +26,7 @@ pub use self::toml::Override;
 pub use panels::Panels;
 
 use crate::scene::{Location, Scene, SceneError};
+use std::collections::HashSet;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -44,9 +45,11 @@ pub fn load_with(path: &Path, overrides: &[Override], defines: &[(String, String
     load_format(path, overrides, defines).map(finished)
 }
 
-/// The last step of all formats.
+/// The last step of all formats: images hold what they may, and each warning is told once.
 fn finished(mut scene: Scene) -> Scene {
     range::keep_ranges(&mut scene);
+    let mut told = HashSet::new();
+    scene.warnings.retain(|warning| told.insert(warning.clone()));
     scene
 }
 

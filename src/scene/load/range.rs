@@ -90,10 +90,21 @@ fn range_of(parameter: Parameter, glows: bool) -> Range {
     }
 }
 
-/// What was limited already: textures that differ in how they lie share their texels.
+type Texels = Arc<Vec<[f32; 4]>>;
+
+/// Texels that were out of range.
+#[derive(Clone)]
+struct Limited {
+    /// As they were: while they are kept, no others have their address.
+    _source: Texels,
+    texels: Texels,
+    faults: Faults,
+}
+
+/// What was limited already, by the address of the texels: textures that differ in how they lie share them.
 #[derive(Default)]
 struct Kept {
-    texels: HashMap<(usize, Range), (Arc<Vec<[f32; 4]>>, Faults)>,
+    texels: HashMap<(usize, Range), Limited>,
     told: BTreeSet<String>,
 }
 
@@ -106,7 +117,7 @@ impl Kept {
             TextureData::Float(_) if texture.extrapolated => return None,
             TextureData::Float(texels) => {
                 let key = (Arc::as_ptr(texels) as usize, range);
-                let (limited, faults) = match self.texels.get(&key) {
+                let limited = match self.texels.get(&key) {
                     Some(known) => known.clone(),
                     None => {
                         let faults = count_faults(texels, range);
@@ -114,10 +125,11 @@ impl Kept {
                             return None;
                         }
                         let limited = texels.iter().map(|texel| limit_texel(*texel, range)).collect();
-                        self.texels.entry(key).or_insert((Arc::new(limited), faults)).clone()
+                        let limited = Limited { _source: texels.clone(), texels: Arc::new(limited), faults };
+                        self.texels.entry(key).or_insert(limited).clone()
                     }
                 };
-                (TextureData::Float(limited), faults, texels.len())
+                (TextureData::Float(limited.texels), limited.faults, texels.len())
             }
             TextureData::Pattern(pattern) => {
                 let texels = pattern.colors.map(|color| color.extend(1.0).to_array());

@@ -49,10 +49,7 @@ pub fn or_absent<T>(
             let (asked, error) = (asked.to_string(), error.to_string());
             // Some errors name that place already.
             let reason = error.strip_prefix(&format!("{asked}: ")).unwrap_or(&error);
-            let warning = format!("{asked}: no texture: {reason}");
-            if !warnings.contains(&warning) {
-                warnings.push(warning);
-            }
+            warnings.push(format!("{asked}: no texture: {reason}"));
             Ok(None)
         }
         Err(error) => Err(error),

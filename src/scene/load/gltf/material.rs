@@ -214,10 +214,10 @@ impl Maker<'_, '_> {
         let strength = strength.map_or(1.0, |s| s.emissive_strength.0);
         let strength = if strength > 0.0 { strength.min(1e6) } else { 0.0 };
         self.material.emission = clamp_color(source.emissive_factor.0) * strength;
-        if let (Some(info), true) = (&source.emissive_texture, self.material.emission != Rgb::ZERO) {
-            if let Some(texture) = self.texture(info, ColorSpace::Srgb)? {
-                self.bind(Parameter::Emission, Channel::Rgb, 1.0, texture);
-            }
+        if let (Some(info), true) = (&source.emissive_texture, self.material.emission != Rgb::ZERO)
+            && let Some(texture) = self.texture(info, ColorSpace::Srgb)?
+        {
+            self.bind(Parameter::Emission, Channel::Rgb, 1.0, texture);
         }
         Ok(())
     }
