@@ -385,7 +385,7 @@ fn missing_files_that_are_no_textures_are_io_errors_that_say_who_asked() {
         assert!(matches!(error, SceneError::Io { .. }) && error.to_string().starts_with(name), "{error}");
     }
     refuses("a.txt", "", "a.txt: scene files are .toml, .obj, .gltf, .glb, .ply, .stl or .xml, found .txt");
-    refuses("a", "", "a: scene files are .toml, .obj, .gltf, .glb, .ply or .xml, found no extension");
+    refuses("a", "", "a: scene files are .toml, .obj, .gltf, .glb, .ply, .stl or .xml, found no extension");
 }
 
 #[test]

@@ -62,7 +62,7 @@ fn round_parts_are_smooth() {
     bytes.extend(12u32.to_le_bytes());
     let rim = |i: usize| {
         let (s, c) = (std::f32::consts::TAU * i as f32 / 12.0).sin_cos();
-        [c, s, if i % 2 == 0 { 0.0 } else { 0.1 }]
+        [c, s, 0.1 * (i % 2) as f32]
     };
     for i in 0..12 {
         bytes.extend([0u8; 12]);

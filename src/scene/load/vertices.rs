@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn equal_keys_are_one_vertex_however_many_share_a_position() {
         let mut vertices = Vertices::<3>::new();
-        let keys: Vec<[u32; 3]> = (0..300).map(|i| [i % 3, i / 3, if i % 2 == 0 { NONE } else { i }]).collect();
+        let keys: Vec<[u32; 3]> = (0..300).map(|i| [i % 3, i / 3, [NONE, i][i as usize % 2]]).collect();
         let first: Vec<u32> = keys.iter().map(|key| vertices.find_or_add(*key, 3).unwrap()).collect();
         assert_eq!(first, (0..300).collect::<Vec<u32>>());
         let again: Vec<u32> = keys.iter().map(|key| vertices.find_or_add(*key, 3).unwrap()).collect();
