@@ -95,7 +95,7 @@ struct SceneHeader {
     uint media_table;
     // 1 if media are nested by rank.
     uint nested;
-    // 1 if some object casts no shadow (path).
+    // 1 if some object casts no shadow.
     uint shadowless;
     // 1 if the camera looks through what glows (path).
     uint hide_emitters;

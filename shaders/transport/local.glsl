@@ -12,6 +12,7 @@
 #include "trace/spawn.glsl"
 #include "trace/surface.glsl"
 #include "transport/mod.glsl"
+#include "transport/weight.glsl"
 
 // Smallest cosine between shading normal and viewer; interpolated normals that face away are bent up to it.
 const float COS_VIEW_MIN = 1.0e-3;
@@ -94,6 +95,10 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
 
     if (!is_delta(material) && !hidden && header.light_count != 0u) {
         Frame frame = shading_frame(surface, material, wo);
+        bool shadowless = false;
+        if (SCENE_SHADOWLESS) {
+            shadowless = (load_instance(surface.instance).flags & INSTANCE_NO_SHADOW) != 0u;
+        }
         for (uint index = 0u; index < header.light_count; index++) {
             Light light = load_light(index);
             LightSample lit = sample_light(light, surface.position);
@@ -103,8 +108,13 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
                 vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
                 uint light_dither = dither_hash(key, (DITHER_LIGHT + point.dither) + index);
                 if (header.shadows != 0u && light.casts_shadow != 0u) {
-                    Ray ray = spawn_ray(point.shadow_from, lit.wi, lit.distance * SHADOW_END);
-                    push_shadow(ShadowRay(ray, contribution, path.slot, light_dither, 0u, 1.0));
+                    // No ray tests what it leaves: behind it, the surface itself is in the way, if it casts shadows.
+                    vec3 wo_local = to_local(frame, wo);
+                    vec3 wi_local = to_local(frame, lit.wi);
+                    if (shadowless || consistent(point.shadow_from, wo, lit.wi, wo_local, wi_local)) {
+                        Ray ray = spawn_ray(point.shadow_from, lit.wi, lit.distance * SHADOW_END);
+                        push_shadow(ShadowRay(ray, contribution, path.slot, light_dither, 0u, 1.0));
+                    }
                 } else {
                     add_contribution(header.film_scale, path.slot, contribution, light_dither);
                 }

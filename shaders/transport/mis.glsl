@@ -17,10 +17,12 @@ float met_weight(PathState path, float sampled) {
 // Notes that `path` goes straight on through `surface`, which it has met at `t`. `filtered`: shadow rays go through it as well,
 // with what it lets through.
 void pass_surface(Surface surface, float t, bool filtered, inout PathState path) {
-    path.passed += t;
     if (SCENE_SHADOWLESS && (load_instance(surface.instance).flags & INSTANCE_NO_SHADOW) != 0u) {
         path.flags |= PATH_BEHIND_SHADOWLESS;
-    } else if (!filtered) {
+        path.passed += t;
+    } else if (filtered) {
+        path.passed += t;
+    } else {
         path.pdf = 0.0;
     }
 }

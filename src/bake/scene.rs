@@ -85,7 +85,7 @@ fn bake_with(
     data.header.light_count = data.lights.len() as u32;
     data.header.level_count = if data.branches() { data.header.max_depth + 1 } else { 1 };
     let shadowless = data.instances.iter().any(|instance| instance.flags & INSTANCE_NO_SHADOW != 0);
-    data.header.shadowless = u32::from(shadowless && data.header.integrator == INTEGRATOR_PATH);
+    data.header.shadowless = u32::from(shadowless);
     data.header.shadow_rays = shadow_rays(&data);
     if data.header.shadows == SHADOWS_FILTERED && !data.has_panes() {
         data.header.shadows = SHADOWS_OPAQUE;

@@ -98,7 +98,7 @@ pub struct SceneHeader {
     pub media_table: u32,
     /// 1 if media are nested by rank.
     pub nested: u32,
-    /// 1 if some object casts no shadow (path).
+    /// 1 if some object casts no shadow.
     pub shadowless: u32,
     /// 1 if the camera looks through what glows (path).
     pub hide_emitters: u32,

@@ -1,9 +1,10 @@
 //! The illumination model alone: I = emission + ambient + sum over lights, and what is seen through a pane.
 
+use super::weight::consistent;
 use super::{DITHER_LIGHT, DITHER_SURFACE, LOBE_THROUGH, Queues, add_contribution, push_path, push_shadow};
 use crate::layout::{
-    Hit, Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_ONE_SIDED, MATERIAL_TRANSMISSIVE, Material,
-    PathState, SceneView, ShadowRay, load_light,
+    Hit, INSTANCE_NO_SHADOW, Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_ONE_SIDED,
+    MATERIAL_TRANSMISSIVE, Material, PathState, SceneView, ShadowRay, load_instance, load_light,
 };
 use crate::shading::frame::{Frame, frame_from_normal, frame_from_tangent, to_local};
 use crate::shading::light::sample_light;
@@ -113,6 +114,10 @@ pub fn shade_local(
 
     if !is_delta(material) && !hidden {
         let frame = shading_frame(scene, surface, material, wo);
+        let mut shadowless = false;
+        if scene.header.shadowless != 0 {
+            shadowless = (load_instance(scene, surface.instance).flags & INSTANCE_NO_SHADOW) != 0;
+        }
         for index in 0..scene.header.light_count {
             let light: Light = load_light(scene, index);
             let mut lit = sample_light(&light, surface.position);
@@ -124,11 +129,13 @@ pub fn shade_local(
                 let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
                 let light_dither = dither_hash(key, (DITHER_LIGHT + point.dither) + index);
                 if scene.header.shadows != 0 && light.casts_shadow != 0 {
-                    let ray = spawn_ray(&point.shadow_from, lit.wi, lit.distance * SHADOW_END);
-                    push_shadow(
-                        queues,
-                        ShadowRay { ray, contribution, slot: path.slot, dither: light_dither, layer: 0, weight: 1.0 },
-                    );
+                    // No ray tests what it leaves: behind it, the surface itself is in the way, if it casts shadows.
+                    let (wo_local, wi_local) = (to_local(frame, wo), to_local(frame, lit.wi));
+                    if shadowless || consistent(&point.shadow_from, wo, lit.wi, wo_local, wi_local) {
+                        let ray = spawn_ray(&point.shadow_from, lit.wi, lit.distance * SHADOW_END);
+                        let (slot, dither) = (path.slot, light_dither);
+                        push_shadow(queues, ShadowRay { ray, contribution, slot, dither, layer: 0, weight: 1.0 });
+                    }
                 } else {
                     add_contribution(queues, scene.header.film_scale, path.slot, contribution, light_dither);
                 }

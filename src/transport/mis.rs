@@ -15,10 +15,12 @@ pub fn met_weight(scene: &SceneView, path: &PathState, sampled: f32) -> f32 {
 /// Notes that `path` goes straight on through `surface`, which it has met at `t`. `filtered`: shadow rays go through it as well,
 /// with what it lets through.
 pub fn pass_surface(scene: &SceneView, surface: &Surface, t: f32, filtered: bool, path: &mut PathState) {
-    path.passed += t;
     if scene.header.shadowless != 0 && (load_instance(scene, surface.instance).flags & INSTANCE_NO_SHADOW) != 0 {
         path.flags |= PATH_BEHIND_SHADOWLESS;
-    } else if !filtered {
+        path.passed += t;
+    } else if filtered {
+        path.passed += t;
+    } else {
         path.pdf = 0.0;
     }
 }

@@ -5,6 +5,7 @@
 mod common;
 #[path = "../common/device.rs"]
 mod device;
+mod leaning;
 mod lens;
 mod many_lights;
 mod nested;
