@@ -57,7 +57,7 @@ void shade_beyond(PathState path, SampleKey key, Surface surface) {
     }
     Spectrum seen = path.throughput * radiance;
     vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
-    Ray ray = spawn_through(surface, direction, T_INFINITE * SHADOW_END);
+    Ray ray = spawn_through(surface, direction, T_INFINITE);
     uint dither = dither_hash(key, DITHER_BACKGROUND);
     float weight = power_heuristic(path.pdf, sampled);
     push_shadow(ShadowRay(ray, contribution, path.slot, dither, 0u, weight));

@@ -369,8 +369,8 @@ fn inspect(args: &RenderArgs, sheet: &Sheet, pixel: Pixel) -> anyhow::Result<Exi
     let sample = args.samples.as_ref().map_or(0, |range| range.0.start);
     let frame = Rect::whole(scene.film.width, scene.film.height);
     let session = team::session(&args.backend, &data, film_of(&scene, &data, frame))?;
-    if session.names().len() > 1 {
-        let device = args.backend.device.as_deref().unwrap_or_default();
+    let device = args.backend.device.as_deref().unwrap_or_default();
+    if device == team::ALL || session.names().len() > 1 {
         return Err(RenderError::NoDevice(format!("--device {device}: this command takes one device")).into());
     }
     let bounces = session.inspect(pixel.x, pixel.y, sample)?;

@@ -86,6 +86,16 @@ impl SceneError {
         }
     }
 
+    /// Whether all that is wrong is a file that is not there, or not for this user.
+    pub fn is_absent(&self) -> bool {
+        use std::io::ErrorKind::{NotADirectory, NotFound, PermissionDenied};
+        match self {
+            Self::Bad { .. } | Self::Memory { .. } => false,
+            Self::Io { source, .. } => matches!(source.kind(), NotFound | NotADirectory | PermissionDenied),
+            Self::Several(errors) => errors.iter().all(Self::is_absent),
+        }
+    }
+
     /// Whether all that is wrong is too little memory.
     pub fn is_memory(&self) -> bool {
         match self {

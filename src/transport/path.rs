@@ -66,7 +66,7 @@ pub fn shade_beyond(scene: &SceneView, path: &PathState, key: SampleKey, surface
     }
     let seen = path.throughput * radiance;
     let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
-    let ray = spawn_through(surface, direction, T_INFINITE * SHADOW_END);
+    let ray = spawn_through(surface, direction, T_INFINITE);
     let (dither, weight) = (dither_hash(key, DITHER_BACKGROUND), power_heuristic(path.pdf, sampled));
     push_shadow(queues, ShadowRay { ray, contribution, slot: path.slot, dither, layer: 0, weight });
 }

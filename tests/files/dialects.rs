@@ -175,7 +175,7 @@ fn bad_lines_are_refused_at_their_place() {
             "v 0 0 0\nf 1 1 18446744073709551617\n",
             "a.obj:2:7: expected the index of a vertex, found \"18446744073709551617\"",
         ),
-        ("v 0 0 0 1 2 nan\n", "a.obj:1:13: \"nan\" is not a finite number"),
+        ("v 0 0 0 1 2 nan\n", "a.obj:1:13: \"nan\" is NaN, which is no number"),
     ];
     for (text, expected) in cases {
         let message = Folder::new(&[("a.obj", text.as_bytes())]).refused("a.obj");

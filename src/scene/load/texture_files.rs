@@ -36,8 +36,8 @@ impl TextureFiles {
     }
 }
 
-/// What becomes of a texture whose file cannot be read, in scenes of every format: the scene is drawn without it, and a warning
-/// says so. A file that can be read and is no picture stays an error. `asked`: the place that asks for the file.
+/// What becomes of a texture whose file is not there, in scenes of every format: the scene is drawn without it, and a warning
+/// says so. A file that is there and is no picture stays an error. `asked`: the place that asks for the file.
 pub fn or_absent<T>(
     read: Result<T, SceneError>,
     asked: impl Display,
@@ -45,7 +45,7 @@ pub fn or_absent<T>(
 ) -> Result<Option<T>, SceneError> {
     match read {
         Ok(texture) => Ok(Some(texture)),
-        Err(error) if error.is_io() => {
+        Err(error) if error.is_absent() => {
             let (asked, error) = (asked.to_string(), error.to_string());
             // Some errors name that place already.
             let reason = error.strip_prefix(&format!("{asked}: ")).unwrap_or(&error);
