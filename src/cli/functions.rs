@@ -2,7 +2,6 @@
 
 use super::Usage;
 use super::setup::{BackendFlags, BackendName};
-use crate::render::RenderError;
 use crate::render::vulkan::{Context, DeviceChoice};
 use crate::verify::report::{Outcome, Row};
 use crate::verify::twins::{FAMILIES, compare};
@@ -20,7 +19,7 @@ pub fn run(count: u32, flags: &BackendFlags, wanted: impl Fn(&str) -> bool) -> a
         .into());
     }
     let Ok(choice) = flags.device.as_deref().unwrap_or("auto").parse::<DeviceChoice>();
-    let mut context = Context::new(&choice, false).map_err(RenderError::from)?;
+    let mut context = Context::new(&choice, false)?;
     let mut rows = Vec::new();
     for family in FAMILIES {
         for (number, twin) in family.twins.iter().enumerate().filter(|(_, twin)| wanted(twin.name)) {

@@ -124,7 +124,7 @@ impl Textures {
     }
 
     fn load(&mut self, table: &Reader, key: &str, file: &str, space: ColorSpace) -> Result<Option<Texture>> {
-        let read = self.files.load(&beside(table.document, file), space);
+        let read = self.files.load(&beside(table.document, file), space).map_err(|error| refer(table, key, error));
         let place = table.node(key).map_or(table.place, |node| node.place);
         or_absent(read, table.document.location(place), &mut self.warnings)
     }
