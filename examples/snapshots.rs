@@ -3,7 +3,7 @@
 //!     cargo run --release --example snapshots -- scenes/cornell.toml 4096x4096 4 1
 //!
 //! Arguments: scene, size, samples a pixel, seconds from snapshot to snapshot (0: none is taken). Each snapshot is kept until
-//! the next, as a preview would, so every range of samples that is finished meanwhile costs a copy of the film.
+//! the next, as a preview would, so every range of samples that is finished meanwhile makes a film beside it.
 
 use gonio::bake::bake;
 use gonio::film::{Film, FilmSpec};

@@ -203,6 +203,24 @@ impl Film {
         });
     }
 
+    /// A film with `sums` of the whole crop added, this one left as it is: in one pass, where a copy would take one of its own.
+    #[must_use]
+    pub fn with_sums(&self, sums: &[FilmSum]) -> Self {
+        debug_assert_eq!(self.sums.len(), sums.len());
+        let added = |(pixel, sum): (&[i64; 4], &FilmSum)| {
+            let mut pixel = *pixel;
+            pixel.iter_mut().zip(sum_lanes(sum)).for_each(|(lane, value)| add_to(lane, value));
+            pixel
+        };
+        Self {
+            spec: self.spec.clone(),
+            sums: self.sums.par_iter().zip(sums).map(added).collect(),
+            aovs: self.aovs.clone(),
+            samples: self.samples.clone(),
+            ..*self
+        }
+    }
+
     /// Adds auxiliary values to the pixels of `rect`, like `add_sums`; nothing if the film keeps none. Depth, object
     /// and material are taken only if the values are of samples that include sample 0.
     pub fn add_aovs(&mut self, rect: Rect, pixels: &[AovPixel], has_first_sample: bool) {

@@ -9,6 +9,7 @@ use crate::film::{Film, Rect};
 use crate::layout::{AovPixel, FilmSum, Hit, PathState};
 use crate::watch::Watch;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// The parts of a picture a call covers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,6 +70,23 @@ impl Pass {
     /// Adds the samples of `job` to a film whose crop contains the job's and that does not hold them yet.
     pub fn add_to(&self, job: &Job, film: &mut Film) {
         film.add_sums(job.crop, &self.sums);
+        self.record_in(job, film);
+    }
+
+    /// The same of a film that others look at, which stays as it is. `job` is of its whole crop.
+    pub fn add_to_shared(&self, job: &Job, film: &mut Arc<Film>) {
+        match Arc::get_mut(film) {
+            Some(film) => self.add_to(job, film),
+            None => {
+                let mut added = film.with_sums(&self.sums);
+                self.record_in(job, &mut added);
+                *film = Arc::new(added);
+            }
+        }
+    }
+
+    /// All but the sums.
+    fn record_in(&self, job: &Job, film: &mut Film) {
         if !self.aovs.is_empty() {
             film.add_aovs(job.crop, &self.aovs, job.samples.contains(&0));
         }

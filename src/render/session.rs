@@ -98,8 +98,8 @@ impl<'a> Session<'a> {
         self.members.iter().try_for_each(|member| lock(member).open().map(drop))
     }
 
-    /// The film so far: whole samples of all its pixels. No device waits for it, and it never changes; one that is kept while
-    /// devices finish ranges costs a copy of the film.
+    /// The film so far: whole samples of all its pixels. No device waits for it, and it never changes; while one is kept, the
+    /// next range makes a film beside it.
     pub fn snapshot(&self) -> Arc<Film> {
         lock(&self.film).clone()
     }
@@ -228,7 +228,7 @@ impl Worker<'_> {
         let start = Instant::now();
         let result = renderer.render(&job, &watch, pass);
         match result {
-            Ok(()) => pass.add_to(&job, Arc::make_mut(&mut lock(self.film))),
+            Ok(()) => pass.add_to_shared(&job, &mut lock(self.film)),
             Err(_) => self.watch.advance(-(watch.done() as i64)),
         }
         let seconds = result.is_ok().then(|| start.elapsed().as_secs_f64());
@@ -245,7 +245,7 @@ impl Worker<'_> {
         if !self.scheduler.settle(&task.samples, result.is_ok()) {
             return result.map(|()| false);
         }
-        pass.add_to(&job, Arc::make_mut(&mut lock(self.film)));
+        pass.add_to_shared(&job, &mut lock(self.film));
         self.watch.advance(watch.done() as i64);
         result.map(|()| true)
     }
