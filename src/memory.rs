@@ -58,6 +58,19 @@ pub struct Shortage {
     pub own: u64,
 }
 
+/// Why what is to be read is refused: it is not as it must be, or takes more memory than there is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Refused {
+    Bad(String),
+    Memory(Shortage),
+}
+
+impl From<String> for Refused {
+    fn from(message: String) -> Self {
+        Self::Bad(message)
+    }
+}
+
 /// An error unless the program may take `bytes` bytes for `what` beside those that it has.
 pub fn check(what: &str, bytes: u64) -> Result<(), Shortage> {
     against(what, bytes, limit(), own())

@@ -30,7 +30,7 @@ pub fn session<'a>(flags: &BackendFlags, data: &'a SceneData, film: Film) -> any
     Ok(Session::new(film, members).with_reserve(reserve))
 }
 
-/// Index of the GPU that suits best. Software devices share the processor with the CPU backend, which is faster.
+/// Index of the GPU that suits best. Software devices share the processor with the CPU backend, and have to compile first.
 fn best_gpu() -> Option<usize> {
     static FOUND: OnceLock<Option<usize>> = OnceLock::new();
     *FOUND.get_or_init(|| {

@@ -2,7 +2,7 @@
 
 use super::display::srgb_decode;
 use super::{Film, FilmError, Image, gfilm};
-use crate::memory::{self, Shortage};
+use crate::memory::{self, Refused};
 use crate::picture::{self, Purpose};
 use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits};
 use std::fs::File;
@@ -93,39 +93,26 @@ pub fn film_picture(film: &Film) -> Picture {
     Picture { image, codes: None, film_hash: Some(film.hash()) }
 }
 
-/// Why a picture is not read.
-enum Fault {
-    Bad(String),
-    Memory(Shortage),
-}
-
-impl From<String> for Fault {
-    fn from(message: String) -> Self {
-        Self::Bad(message)
+/// The error of a picture that is refused; `path` is its name.
+fn refusal(path: &Path, refused: Refused) -> FilmError {
+    match refused {
+        Refused::Bad(message) => FilmError::bad(path, message),
+        Refused::Memory(short) => FilmError::short(path, short),
     }
 }
 
-impl Fault {
-    fn of(self, path: &Path) -> FilmError {
-        match self {
-            Self::Bad(message) => FilmError::bad(path, message),
-            Self::Memory(short) => FilmError::short(path, short),
-        }
-    }
-}
-
-fn check_size(width: u64, height: u64) -> Result<(), Fault> {
+fn check_size(width: u64, height: u64) -> Result<(), Refused> {
     let pixels = width.saturating_mul(height);
     if width == 0 || height == 0 || pixels > MAX_PIXELS {
         return Err(format!("the picture is {width}x{height}; 1 to {MAX_PIXELS} pixels are allowed").into());
     }
-    memory::check("the picture", pixels * 16).map_err(Fault::Memory)
+    memory::check("the picture", pixels * 16).map_err(Refused::Memory)
 }
 
 fn read_with_image(path: &Path, bytes: &[u8], format: ImageFormat) -> Result<Picture, FilmError> {
     let bad = |e: ImageError| FilmError::bad(path, e.to_string());
     let (width, height) = ImageReader::with_format(Cursor::new(bytes), format).into_dimensions().map_err(bad)?;
-    check_size(width.into(), height.into()).map_err(|fault| fault.of(path))?;
+    check_size(width.into(), height.into()).map_err(|refused| refusal(path, refused))?;
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
     limits.max_alloc = Some(16 * MAX_PIXELS);
@@ -159,7 +146,7 @@ fn coded_picture(width: u32, height: u32, codes: Codes) -> Picture {
 }
 
 /// The picture in a file of linear numbers.
-fn linear_picture(path: &Path, picture: Result<picture::Picture, Fault>) -> Result<Picture, FilmError> {
-    let picture::Picture { width, height, pixels } = picture.map_err(|fault| fault.of(path))?;
+fn linear_picture(path: &Path, picture: Result<picture::Picture, Refused>) -> Result<Picture, FilmError> {
+    let picture::Picture { width, height, pixels } = picture.map_err(|refused| refusal(path, refused))?;
     Ok(Picture { image: Image { width, height, pixels }, codes: None, film_hash: None })
 }

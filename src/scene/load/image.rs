@@ -2,7 +2,7 @@
 //! through `picture`.
 
 use super::text::read_bytes;
-use crate::memory::{self, Shortage};
+use crate::memory::{self, Refused};
 use crate::picture::{self, Purpose};
 use crate::scene::{Location, SceneError, Texture, TextureData};
 use image::{DynamicImage, ImageDecoder, ImageReader};
@@ -64,26 +64,14 @@ fn read_texture(bytes: &[u8], name: &Path, space: ColorSpace, purpose: Purpose) 
     } else {
         decode(bytes, name, space)
     };
-    let (width, height, data) = read.map_err(|fault| match fault {
-        Fault::Bad(message) => SceneError::bad(Location::file(name), message),
-        Fault::Memory(short) => SceneError::Memory { location: Location::file(name), short },
+    let (width, height, data) = read.map_err(|refused| match refused {
+        Refused::Bad(message) => SceneError::bad(Location::file(name), message),
+        Refused::Memory(short) => SceneError::Memory { location: Location::file(name), short },
     })?;
     Ok(Texture::new(name.display().to_string(), width, height, data))
 }
 
-/// Why a picture is none.
-enum Fault {
-    Bad(String),
-    Memory(Shortage),
-}
-
-impl From<String> for Fault {
-    fn from(message: String) -> Self {
-        Self::Bad(message)
-    }
-}
-
-fn decode(bytes: &[u8], name: &Path, space: ColorSpace) -> Result<(u32, u32, TextureData), Fault> {
+fn decode(bytes: &[u8], name: &Path, space: ColorSpace) -> Result<(u32, u32, TextureData), Refused> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     // Nothing in a TGA file says that it is one.
     if reader.format().is_none() && name.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("tga")) {
@@ -92,7 +80,7 @@ fn decode(bytes: &[u8], name: &Path, space: ColorSpace) -> Result<(u32, u32, Tex
     if reader.format().is_none() {
         return Err("not a picture in PNG, JPEG, HDR, WebP, BMP, PNM, TGA or EXR format".to_owned().into());
     }
-    let readable = |e: image::ImageError| Fault::Bad(format!("cannot decode the picture: {e}"));
+    let readable = |e: image::ImageError| Refused::Bad(format!("cannot decode the picture: {e}"));
     let mut decoder = reader.into_decoder().map_err(readable)?;
     let (width, height) = decoder.dimensions();
     check_size(u64::from(width), u64::from(height))?;
@@ -104,7 +92,7 @@ fn decode(bytes: &[u8], name: &Path, space: ColorSpace) -> Result<(u32, u32, Tex
 }
 
 /// Refuses what is too large, and claims memory for the rest: decoded, as a decoder has it beside.
-fn check_size(width: u64, height: u64) -> Result<(), Fault> {
+fn check_size(width: u64, height: u64) -> Result<(), Refused> {
     let side = 1..=u64::from(SIDE_MAX);
     if !side.contains(&width) || !side.contains(&height) {
         return Err(format!("a picture of {width} x {height}; allowed are 1 to {SIDE_MAX} each way").into());
@@ -112,7 +100,7 @@ fn check_size(width: u64, height: u64) -> Result<(), Fault> {
     if width * height > TEXELS_MAX {
         return Err(format!("a picture of {width} x {height}; allowed are {TEXELS_MAX} texels").into());
     }
-    memory::check("the picture", width * height * 2 * TEXEL_BYTES).map_err(Fault::Memory)
+    memory::check("the picture", width * height * 2 * TEXEL_BYTES).map_err(Refused::Memory)
 }
 
 fn texels(picture: DynamicImage, space: ColorSpace) -> TextureData {
