@@ -1,5 +1,6 @@
-//! Compiles every kernel, proves it strict and embeds it.
+//! Writes the layout of what crosses the bus for shaders, compiles every kernel, proves it strict and embeds it.
 //!
+//! `src/layout/*.rs` declare the layout; `OUT_DIR/layout/*.glsl` and `OUT_DIR/layout.rs` follow from them.
 //! `shaders/kernels/*.comp` and `shaders/kernels/parity/*.comp` are each compiled twice: for storage buffers, and with
 //! `FETCH_TEXEL` for uniform texel buffers. The table goes to `OUT_DIR/kernels.rs`, which `src/shaders.rs` includes.
 
@@ -10,6 +11,10 @@ use std::{env, fs, io};
 
 #[path = "shaders/build/compile.rs"]
 mod compile;
+#[path = "shaders/build/emit.rs"]
+mod emit;
+#[path = "shaders/build/schema.rs"]
+mod schema;
 #[path = "shaders/build/strict.rs"]
 mod strict;
 
@@ -18,25 +23,43 @@ const FOLDERS: [(&str, &str); 2] = [("kernels", ""), ("kernels/parity", "parity/
 
 fn main() {
     println!("cargo::rerun-if-changed=shaders");
-    if let Err(errors) = embed_kernels() {
+    println!("cargo::rerun-if-changed=src/layout");
+    if let Err(errors) = write_layout().and_then(|()| embed_kernels()) {
         for line in errors {
             println!("cargo::error={line}");
         }
     }
 }
 
+/// Writes the layout's other side.
+fn write_layout() -> Result<(), BTreeSet<String>> {
+    let one = |message: String| BTreeSet::from([message]);
+    let (root, out) = folders();
+    let schema = schema::Schema::read(&root.join("src/layout")).map_err(one)?;
+    fs::create_dir_all(out.join("layout")).map_err(|e| one(e.to_string()))?;
+    for (name, text) in emit::files(&schema).map_err(one)? {
+        fs::write(out.join(name), text).map_err(|e| one(format!("{name}: {e}")))?;
+    }
+    Ok(())
+}
+
+/// The repository's, and that of what the build writes.
+fn folders() -> (PathBuf, PathBuf) {
+    let folder = |name| PathBuf::from(env::var_os(name).expect("cargo sets it"));
+    (folder("CARGO_MANIFEST_DIR"), folder("OUT_DIR"))
+}
+
 /// Writes the table; the error is one message a line, without repetition.
 fn embed_kernels() -> Result<(), BTreeSet<String>> {
     let one = |e: io::Error| BTreeSet::from([e.to_string()]);
-    let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
-    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
+    let (root, out) = folders();
     let shaders = root.join("shaders");
     let sources = find_kernels(&shaders).map_err(one)?;
 
     let mut errors = BTreeSet::new();
     let mut table = String::from("static KERNELS: &[Kernel] = &[\n");
     for (name, file) in &sources {
-        match (build(file, &shaders, &[]), build(file, &shaders, &["FETCH_TEXEL"])) {
+        match (build(file, &shaders, &out, &[]), build(file, &shaders, &out, &["FETCH_TEXEL"])) {
             (Ok(storage), Ok(texel)) => {
                 let stem = name.replace('/', "_");
                 let storage_file = out.join(format!("{stem}.storage.spv"));
@@ -85,12 +108,12 @@ fn find_kernels(shaders: &Path) -> io::Result<Vec<(String, PathBuf)>> {
 }
 
 /// One variant of one kernel: compiled, proved strict, decorated, stripped.
-fn build(file: &Path, shaders: &Path, defines: &[&str]) -> Result<Vec<u32>, Vec<String>> {
+fn build(file: &Path, shaders: &Path, out: &Path, defines: &[&str]) -> Result<Vec<u32>, Vec<String>> {
     let one = |message: String| message.lines().map(str::to_owned).collect::<Vec<_>>();
     let below = file.strip_prefix(shaders).unwrap_or(file);
     let name = format!("shaders/{}", below.display());
     let text = fs::read_to_string(file).map_err(|e| one(format!("{name}: {e}")))?;
-    let words = compile::glsl_to_spirv(&text, &name, shaders, defines).map_err(one)?;
+    let words = compile::glsl_to_spirv(&text, &name, &[shaders, out], defines).map_err(one)?;
     let mut module = strict::load(&words).map_err(|e| one(format!("{name}: {e}")))?;
     let violations = strict::check(&module);
     if !violations.is_empty() {

@@ -13,7 +13,7 @@ use source::{Function, Source, root, set, sources, tokens};
 use through::THROUGH;
 
 /// Folders whose files exist twice, in `src/` and in `shaders/`.
-const TWINS: [&str; 4] = ["layout", "shading", "trace", "transport"];
+const TWINS: [&str; 3] = ["shading", "trace", "transport"];
 
 /// Functions whose twins differ or that have none: (folder and stem, function, why).
 const ALONE: [(&str, &str, &str); 7] = [
@@ -287,8 +287,7 @@ fn differences(place: &str, rust: &Source, glsl: &Source) -> Vec<String> {
 #[test]
 fn twins_define_the_same_functions_with_the_same_arguments_and_words() {
     let mut found = Vec::new();
-    // `load_*` is written once in Rust, as a macro; tests/layout.rs proves it.
-    for folder in TWINS.into_iter().filter(|folder| *folder != "layout") {
+    for folder in TWINS {
         let (rust, glsl) = pairs(folder);
         for (stem, rust) in &rust {
             if let Some(glsl) = glsl.get(stem) {

@@ -280,32 +280,15 @@ fn the_heap_has_every_array_where_the_header_says() {
     });
     let data = bake(&scene).expect("bakes");
     let h = &data.header;
-    let pieces = data.heap_pieces();
-    let first = pieces.map(|piece| piece.first_word);
-    assert_eq!(
-        first,
-        [
-            h.first_instance,
-            h.first_top_instance,
-            h.first_face,
-            h.first_vertex,
-            h.first_material,
-            h.first_light,
-            h.first_texture,
-            h.first_texel,
-            h.first_table,
-            h.first_emitter,
-            h.first_environment_map,
-        ]
-    );
-    for pair in pieces.windows(2) {
-        assert_eq!(pair[1].first_word, pair[0].first_word + pair[0].bytes.len().div_ceil(16) as u32);
-    }
-    let last = pieces[10];
-    assert_eq!(data.heap_words(), u64::from(last.first_word) + last.bytes.len().div_ceil(16) as u64);
-    assert_eq!(pieces[7].bytes, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]);
+    let first: [u32; 11] = bytemuck::cast(h.first);
+    let arrays = data.view().heap();
+    let end = |at: usize| first[at] + arrays[at].len().div_ceil(16) as u32;
+    assert_eq!(first[0], 0);
+    assert!((1..11).all(|at| first[at] == end(at - 1)), "{first:?}");
+    assert_eq!(data.heap_words(), u64::from(end(10)));
+    assert_eq!((h.first.texels, arrays[7]), (first[7], &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12][..]));
     // The sRGB table comes first, then the filter's.
-    assert_eq!((data.tables[255], h.filter_table, h.filter_kind), (1.0, 256, FILTER_TABLE));
+    assert_eq!((data.tables[255], h.filter_table, data.features.filter), (1.0, 256, FILTER_TABLE));
     assert_eq!(data.tables.len() as u32, 256 + 2 * FILTER_KNOTS + 1);
 }
 

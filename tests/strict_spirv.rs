@@ -34,7 +34,7 @@ fn probe(functions: &str) -> Module {
          {functions}\n\
          void main() {{ data.x = victim(data.y, data, number); }}\n"
     );
-    let words = compile::glsl_to_spirv(&text, "shaders/kernels/probe.comp", Path::new("."), &[])
+    let words = compile::glsl_to_spirv(&text, "shaders/kernels/probe.comp", &[Path::new(".")], &[])
         .unwrap_or_else(|e| panic!("{functions}\n{e}"));
     strict::load(&words).expect("shaderc writes valid modules")
 }
@@ -218,7 +218,7 @@ fn a_violation_in_an_included_file_names_that_file() {
                 #include \"shading/bad.glsl\"\n\
                 layout(set = 0, binding = 0) buffer Data { float data; };\n\
                 void main() { data = bad(data); }\n";
-    let words = compile::glsl_to_spirv(text, "shaders/kernels/x.comp", shaders.path(), &[]);
+    let words = compile::glsl_to_spirv(text, "shaders/kernels/x.comp", &[shaders.path()], &[]);
     let module = strict::load(&words.expect("valid GLSL")).expect("valid SPIR-V");
     let found = strict::check(&module);
     assert_eq!(found.len(), 1, "{found:?}");
@@ -228,7 +228,7 @@ fn a_violation_in_an_included_file_names_that_file() {
 #[test]
 fn a_glsl_error_names_file_line_and_cause() {
     let compile = |text| {
-        compile::glsl_to_spirv(text, "shaders/kernels/x.comp", Path::new("no such folder"), &[])
+        compile::glsl_to_spirv(text, "shaders/kernels/x.comp", &[Path::new("no such folder")], &[])
             .expect_err("the text is wrong")
     };
     let undeclared = compile("#version 460\nvoid main() {\n  nothing();\n}\n");
@@ -244,7 +244,7 @@ fn a_glsl_error_names_file_line_and_cause() {
 #[test]
 fn a_definition_chooses_the_fetch_path() {
     let text = "#version 460\n#ifndef FETCH_TEXEL\n#error storage\n#endif\nvoid main() {}\n";
-    let compile = |defines| compile::glsl_to_spirv(text, "x.comp", Path::new("."), defines);
+    let compile = |defines| compile::glsl_to_spirv(text, "x.comp", &[Path::new(".")], defines);
     assert!(compile(&[]).is_err());
     assert!(compile(&["FETCH_TEXEL"]).is_ok());
 }

@@ -5,11 +5,11 @@ mod device;
 
 use gonio::bake::shapes::Shapes;
 use gonio::bake::{SceneArrays, SceneData};
-use gonio::layout::{Node, PathState, SceneHeader, Triangle};
+use gonio::layout::{Node, PathState, RECORDS, SceneHeader, Triangle, Variant};
 use gonio::render::RenderError;
 use gonio::render::vulkan::{
     Binding, BindingKind, Bound, BufferSpec, FetchChoice, Instance, Place, STORAGE_FETCH_STORAGE_BUFFERS, SceneBuffers,
-    TEXEL_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_TEXEL_BUFFERS, WORKGROUP, bindings,
+    TEXEL_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_TEXEL_BUFFERS, bindings,
 };
 use gonio::shaders::{self, Fetch};
 use std::path::Path;
@@ -34,13 +34,14 @@ fn bytes_survive_the_way_to_the_device_and_back() {
 }
 
 /// Sends `records` through the kernel that reads and writes every record of the layout (its number there: `record`).
-fn through_the_layout_kernel<T: bytemuck::Pod>(record: u32, records: &[T]) -> Option<Vec<T>> {
+fn through_the_layout_kernel<T: bytemuck::Pod>(record: &str, records: &[T]) -> Option<Vec<T>> {
     let mut context = device::context()?;
     let words = shaders::kernel("parity/layout", Fetch::Storage).expect("embedded by build.rs");
     let mut input = vec![0; size_of::<SceneHeader>()];
     input.extend_from_slice(bytemuck::cast_slice(records));
     let buffers = [BufferSpec::Input(&input), BufferSpec::Output(size_of_val(records) as u64)];
-    let push = [record, records.len() as u32];
+    let number = RECORDS.iter().position(|of| of.name == record).expect("a record");
+    let push = [number as u32, records.len() as u32];
     let output = context
         .run_kernel("parity/layout", words, &buffers, bytemuck::cast_slice(&push), records.len() as u32)
         .unwrap();
@@ -56,12 +57,12 @@ fn counted<T: bytemuck::Pod>(count: usize) -> Vec<T> {
 #[test]
 fn a_kernel_reads_and_writes_records_as_rust_lays_them_out() {
     let nodes: Vec<Node> = counted(5);
-    let Some(returned) = through_the_layout_kernel(0, &nodes) else {
+    let Some(returned) = through_the_layout_kernel("Node", &nodes) else {
         return;
     };
     assert_eq!(returned, nodes);
     let paths: Vec<PathState> = counted(70);
-    assert_eq!(through_the_layout_kernel(9, &paths), Some(paths));
+    assert_eq!(through_the_layout_kernel("PathState", &paths), Some(paths));
 }
 
 #[test]
@@ -108,7 +109,7 @@ fn a_storage_buffer_beyond_the_limit_is_an_error_that_names_it() {
         return println!("SKIPPED: no allocation is larger than a storage buffer may be");
     }
     let words = shaders::kernel("parity/layout", Fetch::Storage).expect("embedded by build.rs");
-    let kernel = context.kernel("parity/layout", words, &[(0, WORKGROUP)], 8).unwrap();
+    let kernel = context.kernel("parity/layout", words, &Variant::default().constants(), 8).unwrap();
     let buffer = context.buffer("long array", limits.storage_range + 16, Place::Device).unwrap();
     let Err(error) = Bound::new(&kernel, |_, _| vec![buffer.clone()]) else { panic!("bound") };
     assert!(error.to_string().starts_with("long array has "), "{error}");
@@ -118,9 +119,9 @@ fn scene(nodes: usize, triangles: usize, texels: usize) -> SceneData {
     let shapes =
         Shapes { nodes: counted(nodes), triangles: counted(triangles), top_instances: counted(3), ..Shapes::default() };
     let mut data = SceneArrays { shapes: Arc::new(shapes), texels: counted(texels), ..SceneArrays::default() };
-    data.header.first_top_instance = 2;
-    data.header.first_texel = 3;
-    data.header.first_table = 3 + texels.div_ceil(4) as u32;
+    data.header.first.top_instances = 2;
+    data.header.first.texels = 3;
+    data.header.first.tables = 3 + texels.div_ceil(4) as u32;
     data.into()
 }
 
@@ -134,7 +135,15 @@ fn a_scene_is_cut_into_pages_whose_bytes_in_a_row_are_its_arrays() {
         let buffers = SceneBuffers::upload(&mut context, &data, fetch, Some(2000)).unwrap();
         // Pages of 1024 bytes: 8000, 1968 (within one page's limit, so not cut) and 48 + 4000 bytes.
         assert_eq!(buffers.page_counts(), [8, 1, 4]);
-        assert_eq!(buffers.constants(), [(1, 8), (2, 1), (3, 4), (4, 6)]);
+        let pages = Variant {
+            node_pages: 8,
+            triangle_pages: 1,
+            data_pages: 4,
+            page_shift: 6,
+            stack_depth: 1,
+            ..Variant::default()
+        };
+        assert_eq!(buffers.variant(), pages);
         let mut read = |set: usize| -> Vec<u8> {
             let pages = buffers.pages(set).to_vec();
             pages.iter().flat_map(|page| context.download::<u8>(page, 0, page.size() as usize).unwrap()).collect()
@@ -208,9 +217,10 @@ fn kernels_bind_no_more_than_devices_are_asked_for() {
         for (fetch, at) in [(Fetch::Storage, 0), (Fetch::Texel, 2)] {
             let words = shaders::kernel(name, fetch).expect("listed");
             // A scene of one page of each set, as most are; paths in groups or not, camera rays or others.
-            for (grouped, camera) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                let constants = [(1, 1), (2, 1), (3, 1), (31, grouped), (32, camera)];
-                let found = bindings(&shaders::specialise(words, &constants).unwrap()).unwrap();
+            for (shade_grouped, extend_camera) in [(false, false), (false, true), (true, false), (true, true)] {
+                let one = Variant { node_pages: 1, triangle_pages: 1, data_pages: 1, ..Variant::default() };
+                let variant = Variant { shade_grouped, extend_camera, ..one };
+                let found = bindings(&shaders::specialise(words, &variant.constants()).unwrap()).unwrap();
                 let count = |kind| found.iter().filter(|b| b.kind == kind).map(|b| b.count).sum::<u32>();
                 largest[at] = count(BindingKind::StorageBuffer).max(largest[at]);
                 largest[at + 1] = count(BindingKind::TexelBuffer).max(largest[at + 1]);

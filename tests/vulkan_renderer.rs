@@ -114,7 +114,7 @@ fn film(scene: &Scene, data: &SceneData, crop: Rect) -> Film {
         integrator: "whitted".to_owned(),
         version: "test".to_owned(),
         transparent: false,
-        aovs: data.header.aovs != 0,
+        aovs: data.features.has_aovs,
         tonemap: scene.film.tonemap,
         exposure: 0.0,
         gamma: None,

@@ -130,7 +130,7 @@ proptest! {
 fn scene(filter: &Filter) -> SceneData {
     let baked = filter_table(filter);
     let mut data = SceneArrays { tables: vec![f32::NAN; 5], ..SceneArrays::default() };
-    data.header.filter_kind = baked.kind;
+    data.features.filter = baked.kind;
     data.header.filter_radius = baked.radius;
     data.header.filter_norm = baked.norm;
     data.header.filter_table = 5;

@@ -11,12 +11,12 @@ use shaderc::{
 /// Compiles a compute shader for Vulkan 1.2 (SPIR-V 1.5), unoptimised, with source lines.
 ///
 /// * `text`: the GLSL source; `name`: how messages and `OpLine` call it, such as `shaders/kernels/extend.comp`.
-/// * `shaders`: the folder `#include "shading/math.glsl"` starts from.
+/// * `folders`: where `#include "shading/math.glsl"` is looked for, in this order: `shaders`, and what the build has written.
 /// * `defines`: macros set to nothing before the first line.
 ///
 /// SPIR-V optimisers are kept out because they merge float constants and reassociate before the decorations are read.
 /// The error is shaderc's text, one `file:line: error: message` a line.
-pub fn glsl_to_spirv(text: &str, name: &str, shaders: &Path, defines: &[&str]) -> Result<Vec<u32>, String> {
+pub fn glsl_to_spirv(text: &str, name: &str, folders: &[&Path], defines: &[&str]) -> Result<Vec<u32>, String> {
     let compiler = Compiler::new().map_err(|e| format!("{name}: no shader compiler: {e}"))?;
     let mut options = CompileOptions::new().map_err(|e| format!("{name}: {e}"))?;
     options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_2 as u32);
@@ -27,8 +27,8 @@ pub fn glsl_to_spirv(text: &str, name: &str, shaders: &Path, defines: &[&str]) -
         options.add_macro_definition(define, None);
     }
     options.set_include_callback(|wanted, _kind, from, _depth| {
-        let content = std::fs::read_to_string(shaders.join(wanted))
-            .map_err(|e| format!("no file shaders/{wanted}, wanted by {from}: {e}"))?;
+        let found = folders.iter().find_map(|folder| std::fs::read_to_string(folder.join(wanted)).ok());
+        let content = found.ok_or(format!("no file shaders/{wanted}, wanted by {from}"))?;
         Ok(ResolvedInclude { resolved_name: format!("shaders/{wanted}"), content })
     });
     let artifact =

@@ -16,7 +16,7 @@ uint shade_group(Hit hit) {
     bool by_face = instance.material == INVALID && instance.kind != KIND_SPHERE;
     uint material = by_face ? load_face(instance.first_face + hit.primitive).material : instance.material;
     uint model = load_model(material);
-    return 1u + uint(bitCount(MODELS_PRESENT & ~(0xffffffffu << model)));
+    return 1u + uint(bitCount(MODELS & ~(0xffffffffu << model)));
 }
 
 void main() {

@@ -56,7 +56,7 @@ void push_shadow(ShadowRay shadow) {
         atomicAdd(control.overflows, 1u);
         return;
     }
-    uint first = SCENE_SHADOWS == SHADOWS_FILTERED ? round_.shadow_capacity - round_.shadow_first : 0u;
+    uint first = SHADOWS == SHADOWS_FILTERED ? round_.shadow_capacity - round_.shadow_first : 0u;
     store_shadow_ray(first + at, shadow);
 }
 

@@ -17,7 +17,7 @@ void main() {
     control.shadow_count = 0u;
     control.chunk_count = 0u;
     uint most = control.chunk_limit;
-    if (SCENE_SHADOWS == SHADOWS_FILTERED) {
+    if (SHADOWS == SHADOWS_FILTERED) {
         control.shadow_first = control.shadow_capacity - control.shadow_first;
         // All of those pending may go on behind a pane.
         most = min(most, (control.shadow_capacity - control.shadow_pending) / max(header.shadow_rays, 1u));
@@ -49,7 +49,7 @@ void main() {
     }
     control.shadow = DispatchArguments(groups(control.shadow_pending), 1u, 1u);
     // Without a chunk only the shadow rays of this round are left, and filtered ones may go on.
-    bool more = control.chunk_count != 0u || (SCENE_SHADOWS == SHADOWS_FILTERED && control.shadow_pending != 0u);
+    bool more = control.chunk_count != 0u || (SHADOWS == SHADOWS_FILTERED && control.shadow_pending != 0u);
     uint done = more ? 0u : 1u;
     control.rounds += (control.done & done) == 0u ? 1u : 0u;
     control.done = done;

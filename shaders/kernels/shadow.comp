@@ -10,6 +10,6 @@ void main() {
     begin_round();
     uint i = gl_GlobalInvocationID.x;
     if (i >= control.shadow_pending) return;
-    uint first = SCENE_SHADOWS == SHADOWS_FILTERED ? round_.shadow_first : 0u;
+    uint first = SHADOWS == SHADOWS_FILTERED ? round_.shadow_first : 0u;
     trace_shadow(load_shadow_ray(first + i));
 }

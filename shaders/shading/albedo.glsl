@@ -6,7 +6,7 @@
 #ifndef SHADING_ALBEDO_GLSL
 #define SHADING_ALBEDO_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/math.glsl"
 
 // The table's value at a cosine (clamped to 0..1), linear between the knots. `first`: first float of the header.

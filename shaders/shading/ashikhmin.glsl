@@ -4,7 +4,7 @@
 #ifndef SHADING_ASHIKHMIN_GLSL
 #define SHADING_ASHIKHMIN_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/fresnel.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"

@@ -3,7 +3,7 @@
 #ifndef SHADING_BLINN_PHONG_GLSL
 #define SHADING_BLINN_PHONG_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"

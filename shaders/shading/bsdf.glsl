@@ -2,7 +2,7 @@
 #ifndef SHADING_BSDF_GLSL
 #define SHADING_BSDF_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"

@@ -2,7 +2,7 @@
 #ifndef SHADING_CAMERA_GLSL
 #define SHADING_CAMERA_GLSL
 
-#include "layout/camera.glsl"
+#include "layout/records.glsl"
 #include "shading/math.glsl"
 
 // A ray into the scene.

@@ -7,7 +7,7 @@
 #ifndef SHADING_COOK_TORRANCE_GLSL
 #define SHADING_COOK_TORRANCE_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/distribution.glsl"
 #include "shading/fresnel.glsl"
 #include "shading/lobe.glsl"

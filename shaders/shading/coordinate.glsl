@@ -2,7 +2,7 @@
 #ifndef SHADING_COORDINATE_GLSL
 #define SHADING_COORDINATE_GLSL
 
-#include "layout/texture.glsl"
+#include "layout/records.glsl"
 #include "shading/math.glsl"
 
 // `x`, or 0 if it is infinite or not a number. By its bits: no result may depend on comparing a NaN.

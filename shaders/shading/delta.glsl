@@ -5,7 +5,7 @@
 #ifndef SHADING_DELTA_GLSL
 #define SHADING_DELTA_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/bsdf.glsl"
 #include "shading/dielectric.glsl"
 #include "shading/fresnel.glsl"

@@ -5,7 +5,7 @@
 #ifndef SHADING_DISTRIBUTION_GLSL
 #define SHADING_DISTRIBUTION_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/microfacet.glsl"

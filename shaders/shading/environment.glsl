@@ -6,7 +6,8 @@
 #ifndef SHADING_ENVIRONMENT_GLSL
 #define SHADING_ENVIRONMENT_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"
 #include "shading/texture.glsl"
@@ -151,7 +152,7 @@ vec3 map_radiance(EnvironmentMap map, vec2 uv) {
 
 // Radiance where a ray leaves the scene along `direction` (unit).
 Spectrum background(vec3 direction) {
-    if (SCENE_HAS_ENVIRONMENT_MAP) {
+    if (HAS_ENVIRONMENT_MAP) {
         EnvironmentMap map = load_environment_map(0u);
         vec2 uv = equirectangular_uv(rotate_to(map.to_local, direction));
         return spectrum_from_rgb(map_radiance(map, uv));
@@ -169,7 +170,7 @@ vec2 gradient_luminance() {
 
 // A direction drawn in proportion to the environment's luminance. `u`: 0..1 each, excluding 1.
 EnvironmentSample sample_environment(vec2 u) {
-    if (SCENE_HAS_ENVIRONMENT_MAP) {
+    if (HAS_ENVIRONMENT_MAP) {
         EnvironmentMap map = load_environment_map(0u);
         uint cdfs = map.first_table + (map.height + 2u) * map.width;
         Interval row = find_interval(cdfs + (map.height + 1u) * (map.width + 1u), map.height + 1u, u.y);
@@ -199,7 +200,7 @@ EnvironmentSample sample_environment(vec2 u) {
 
 // Density of `sample_environment` at `direction` (unit, world), per solid angle; its integral is 1.
 float pdf_environment(vec3 direction) {
-    if (SCENE_HAS_ENVIRONMENT_MAP) {
+    if (HAS_ENVIRONMENT_MAP) {
         EnvironmentMap map = load_environment_map(0u);
         vec3 local = rotate_to(map.to_local, direction);
         GridPlace place = grid_place(map.width, map.height, equirectangular_uv(local));

@@ -3,7 +3,8 @@
 #ifndef SHADING_FILTER_GLSL
 #define SHADING_FILTER_GLSL
 
-#include "layout/header.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "shading/math.glsl"
 
 // Where in the pixel's filter a sample lies, and what it counts.
@@ -41,10 +42,10 @@ vec2 sample_filter_table(float u) {
 // `bake/filter`.
 FilterSample sample_filter(vec2 u) {
     float radius = header.filter_radius;
-    if (SCENE_FILTER == FILTER_BOX) {
+    if (FILTER == FILTER_BOX) {
         return FilterSample(vec2((2.0 * u.x - 1.0) * radius, (2.0 * u.y - 1.0) * radius), 1.0);
     }
-    if (SCENE_FILTER == FILTER_TENT) {
+    if (FILTER == FILTER_TENT) {
         return FilterSample(vec2(sample_tent(u.x) * radius, sample_tent(u.y) * radius), 1.0);
     }
     vec2 x = sample_filter_table(u.x);

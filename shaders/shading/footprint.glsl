@@ -2,7 +2,7 @@
 #ifndef SHADING_FOOTPRINT_GLSL
 #define SHADING_FOOTPRINT_GLSL
 
-#include "layout/texture.glsl"
+#include "layout/records.glsl"
 #include "shading/coordinate.glsl"
 #include "shading/frame.glsl"
 #include "shading/math.glsl"

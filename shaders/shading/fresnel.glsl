@@ -5,7 +5,7 @@
 #ifndef SHADING_FRESNEL_GLSL
 #define SHADING_FRESNEL_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/math.glsl"
 
 // (eta cos theta_t)^2 = eta^2 - sin^2 theta_i; zero or less is total internal reflection.

@@ -5,7 +5,7 @@
 #ifndef SHADING_INTERIOR_GLSL
 #define SHADING_INTERIOR_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 
 // The highest rank of a list, 0 if it is empty.
 uint interior_top(uint list) {

@@ -7,7 +7,7 @@
 #ifndef SHADING_KELEMEN_GLSL
 #define SHADING_KELEMEN_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/albedo.glsl"
 #include "shading/fresnel.glsl"
 #include "shading/lobe.glsl"

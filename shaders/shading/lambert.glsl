@@ -3,7 +3,7 @@
 #ifndef SHADING_LAMBERT_GLSL
 #define SHADING_LAMBERT_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"

@@ -2,15 +2,11 @@
 #ifndef SHADING_LIGHT_GLSL
 #define SHADING_LIGHT_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"
-
-// Kernels that know the scene leave out what it does not have (kernels/bindings.glsl).
-#ifndef HAS_FLAPS
-#define HAS_FLAPS true
-#endif
 
 // Squared distance below which a light is on the surface, where it has no direction.
 const float DISTANCE2_MIN = 1.0e-24;

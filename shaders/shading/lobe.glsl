@@ -2,7 +2,7 @@
 #ifndef SHADING_LOBE_GLSL
 #define SHADING_LOBE_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/frame.glsl"
 #include "shading/math.glsl"
 

@@ -7,7 +7,8 @@
 #ifndef SHADING_MATERIAL_GLSL
 #define SHADING_MATERIAL_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "shading/ashikhmin.glsl"
 #include "shading/blinn_phong.glsl"
 #include "shading/bsdf.glsl"
@@ -29,10 +30,6 @@
 #include "shading/tabulated.glsl"
 #include "shading/ward.glsl"
 
-// Kernels that know the scene leave out the models it does not have (`MODELS_PRESENT` in kernels/bindings.glsl).
-#ifndef HAS_MODEL
-#define HAS_MODEL(model) true
-#endif
 #define ARM(model, call) case model: if (HAS_MODEL(model)) return call; break;
 
 // f |cos theta_i| (for the lecture's printed terms: the term over pi), per steradian, over the whole sphere.

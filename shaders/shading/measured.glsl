@@ -7,7 +7,7 @@
 #ifndef SHADING_MEASURED_GLSL
 #define SHADING_MEASURED_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"

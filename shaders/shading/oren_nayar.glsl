@@ -4,7 +4,7 @@
 #ifndef SHADING_OREN_NAYAR_GLSL
 #define SHADING_OREN_NAYAR_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"

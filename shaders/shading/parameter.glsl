@@ -2,13 +2,10 @@
 #ifndef SHADING_PARAMETER_GLSL
 #define SHADING_PARAMETER_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "shading/math.glsl"
 
-// Cut where no material of the scene is principled.
-#ifndef HAS_MODEL
-#define HAS_MODEL(model) true
-#endif
 #define PRINCIPLED(parameter, kept, constant) \
     case parameter: if (HAS_MODEL(MODEL_PRINCIPLED)) kept = clamp_(constant * value.x, 0.0, 1.0); break;
 

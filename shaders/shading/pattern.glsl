@@ -2,16 +2,11 @@
 #ifndef SHADING_PATTERN_GLSL
 #define SHADING_PATTERN_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "shading/coordinate.glsl"
 #include "shading/math.glsl"
 #include "shading/sampling.glsl"
-
-// Kernels that know the scene leave out the formats it does not have (`FORMATS_PRESENT` in kernels/bindings.glsl).
-#ifndef HAS_FORMATS
-#define HAS_FORMATS(mask) true
-#endif
-#define HAS_FORMAT(format) HAS_FORMATS(1u << (format))
 
 // Octaves of noise at most.
 const uint OCTAVES_MOST = 16u;

@@ -5,7 +5,7 @@
 #ifndef SHADING_PHONG_GLSL
 #define SHADING_PHONG_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"

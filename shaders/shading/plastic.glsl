@@ -9,7 +9,7 @@
 #ifndef SHADING_PLASTIC_GLSL
 #define SHADING_PLASTIC_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/albedo.glsl"
 #include "shading/bsdf.glsl"
 #include "shading/distribution.glsl"

@@ -9,7 +9,7 @@
 #ifndef SHADING_PRINCIPLED_GLSL
 #define SHADING_PRINCIPLED_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/bsdf.glsl"
 #include "shading/distribution.glsl"
 #include "shading/fresnel.glsl"

@@ -7,7 +7,7 @@
 #ifndef SHADING_ROUGH_CONDUCTOR_GLSL
 #define SHADING_ROUGH_CONDUCTOR_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/albedo.glsl"
 #include "shading/distribution.glsl"
 #include "shading/fresnel.glsl"

@@ -6,7 +6,7 @@
 #ifndef SHADING_ROUGH_DIELECTRIC_GLSL
 #define SHADING_ROUGH_DIELECTRIC_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/bsdf.glsl"
 #include "shading/distribution.glsl"
 #include "shading/fresnel.glsl"

@@ -6,7 +6,7 @@
 #ifndef SHADING_SAMPLING_GLSL
 #define SHADING_SAMPLING_GLSL
 
-#include "layout/header.glsl"
+#include "layout/records.glsl"
 
 // What a sample depends on besides its dimension.
 struct SampleKey {

@@ -6,7 +6,7 @@
 #ifndef SHADING_SLIDE_GLSL
 #define SHADING_SLIDE_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"

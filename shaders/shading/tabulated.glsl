@@ -9,7 +9,7 @@
 #ifndef SHADING_TABULATED_GLSL
 #define SHADING_TABULATED_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"

@@ -4,14 +4,16 @@
 #ifndef SHADING_TEXTURE_GLSL
 #define SHADING_TEXTURE_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "shading/coordinate.glsl"
 #include "shading/footprint.glsl"
 #include "shading/math.glsl"
 #include "shading/pattern.glsl"
 
-#define HAS_PATTERN HAS_FORMATS(~0u << PATTERN_CHECKER)
-#define HAS_IMAGE HAS_FORMATS(~(~0u << PATTERN_CHECKER))
+// Masks, not `a || b`: that is control flow, even among constants.
+#define HAS_PATTERN ((FORMATS & (~0u << PATTERN_CHECKER)) != 0u)
+#define HAS_IMAGE ((FORMATS & ~(~0u << PATTERN_CHECKER)) != 0u)
 
 // The f32 nearest to 1 / 255; 255 times it is exactly 1.
 const float INV_255 = 0.003921569;

@@ -7,7 +7,7 @@
 #ifndef SHADING_WARD_GLSL
 #define SHADING_WARD_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/microfacet.glsl"

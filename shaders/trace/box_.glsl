@@ -33,7 +33,7 @@
 #ifndef TRACE_BOX_GLSL
 #define TRACE_BOX_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/math.glsl"
 #include "trace/ray.glsl"
 

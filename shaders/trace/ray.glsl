@@ -2,7 +2,7 @@
 #ifndef TRACE_RAY_GLSL
 #define TRACE_RAY_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/math.glsl"
 
 // Components of a direction smaller than this part of the largest one (2^-40) become 0, and their reciprocals that of

@@ -2,7 +2,7 @@
 #ifndef TRACE_SPAWN_GLSL
 #define TRACE_SPAWN_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/math.glsl"
 #include "trace/surface.glsl"
 

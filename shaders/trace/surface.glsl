@@ -2,7 +2,8 @@
 #ifndef TRACE_SURFACE_GLSL
 #define TRACE_SURFACE_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "shading/math.glsl"
 #include "trace/ray.glsl"
 
@@ -147,7 +148,7 @@ vec3 surface_tangent(Surface surface) {
 // barycentric weights or, on a sphere, pushed onto it, and does not inherit the error of t.
 Surface surface_at(Ray ray, Hit hit) {
     Instance instance = load_instance(hit.instance);
-    if (SCENE_HAS_SPHERES && instance.kind == KIND_SPHERE) {
+    if (HAS_SPHERES && instance.kind == KIND_SPHERE) {
         return sphere_surface(instance, ray, hit);
     }
     return triangle_surface(instance, ray, hit);

@@ -2,7 +2,7 @@
 #ifndef TRACE_TANGENT_GLSL
 #define TRACE_TANGENT_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/coordinate.glsl"
 #include "shading/footprint.glsl"
 #include "shading/math.glsl"

@@ -14,7 +14,8 @@
 #define TRACE_TRAVERSE_GLSL
 #ifdef GONIO_FETCH
 
-#include "layout/mod.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "trace/box_.glsl"
 #include "trace/ray.glsl"
 #include "trace/sphere.glsl"
@@ -159,7 +160,7 @@ void enter_instance(Ray ray, uint place, bool any, bool casting, inout Hit hit) 
         return;
     }
     LevelRay level = prepare_ray(origin, transform_vector(record.to_object, ray.direction));
-    if (SCENE_HAS_SPHERES && record.kind == KIND_SPHERE) {
+    if (HAS_SPHERES && record.kind == KIND_SPHERE) {
         test_sphere(ray, level, id, hit);
     } else {
         walk_mesh(ray, level, id, record.root, any, hit);
@@ -173,7 +174,7 @@ Hit traverse(Ray ray, bool any, bool casting) {
     if (header.top_root == INVALID || !within_reach(ray.origin)) {
         return hit;
     }
-    if (SCENE_IS_ONE_INSTANCE) {
+    if (IS_ONE_INSTANCE) {
         enter_instance(ray, 0u, any, casting, hit);
         return hit;
     }

@@ -2,7 +2,7 @@
 #ifndef TRANSPORT_AREA_LIGHT_GLSL
 #define TRANSPORT_AREA_LIGHT_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/frame.glsl"
 #include "shading/light.glsl"
 #include "shading/math.glsl"

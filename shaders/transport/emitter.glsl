@@ -2,7 +2,8 @@
 #ifndef TRANSPORT_EMITTER_GLSL
 #define TRANSPORT_EMITTER_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "shading/environment.glsl"
 #include "shading/light.glsl"
 #include "shading/material.glsl"
@@ -49,7 +50,7 @@ LightSample sample_emitter(Emitter emitter, SampleKey key, Surface surface, vec2
     if (HAS_EMITTER(EMITTER_LIGHT) && emitter.kind == EMITTER_LIGHT) {
         Light light = load_light(emitter.instance);
         LightSample lit = sample_light(light, position);
-        if (SCENE_HAS_SLIDES && light.slide != 0u) lit.radiance *= slide_factor(light, lit.wi);
+        if (HAS_SLIDES && light.slide != 0u) lit.radiance *= slide_factor(light, lit.wi);
         lit.radiance *= rcp(emitter.density);
         return lit;
     }
@@ -59,7 +60,7 @@ LightSample sample_emitter(Emitter emitter, SampleKey key, Surface surface, vec2
     } else if (emitter.instance != surface.instance || emitter.primitive != surface.primitive) {
         lit = sample_triangle_light(emitter, position, u);
     }
-    if (SCENE_HAS_TEXTURED_EMITTERS && (emitter.flags & EMITTER_TEXTURED) != 0u && lit.pdf_solid_angle > 0.0) {
+    if (HAS_TEXTURED_EMITTERS && (emitter.flags & EMITTER_TEXTURED) != 0u && lit.pdf_solid_angle > 0.0) {
         lit.radiance = textured_radiance(emitter, key, position, u, lit) * rcp(lit.pdf_solid_angle);
     }
     return lit;

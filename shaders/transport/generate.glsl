@@ -2,6 +2,7 @@
 #ifndef TRANSPORT_GENERATE_GLSL
 #define TRANSPORT_GENERATE_GLSL
 
+#include "layout/features.glsl"
 #include "shading/camera.glsl"
 #include "shading/filter.glsl"
 #include "shading/sampling.glsl"
@@ -11,7 +12,7 @@
 
 // The key of a path's random numbers: they depend on nothing else.
 SampleKey sample_key(uint pixel, uint sample_index, uint path_id) {
-    return SampleKey(SCENE_SAMPLING, header.strata, header.seed, pixel, sample_index, path_id);
+    return SampleKey(SAMPLER, header.strata, header.seed, pixel, sample_index, path_id);
 }
 
 // Pixel of a slot, counted row by row in the crop.
@@ -32,7 +33,7 @@ PathState generate(Batch batch, uint slot) {
     float film_x = float(x) + 0.5 + pixel_filter.offset.x;
     float film_y = float(y) + 0.5 + pixel_filter.offset.y;
     CameraRay camera = camera_ray(header.camera, film_x, film_y);
-    if (SCENE_HAS_LENS) camera = through_lens(header.camera, camera, square_to_disk(sample_2d(key, DIMENSION_LENS)));
+    if (HAS_LENS) camera = through_lens(header.camera, camera, square_to_disk(sample_2d(key, DIMENSION_LENS)));
     PathState path;
     path.ray.origin = camera.origin;
     path.ray.t_max = T_INFINITE;

@@ -2,7 +2,8 @@
 #ifndef TRANSPORT_LIMIT_GLSL
 #define TRANSPORT_LIMIT_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"
 #include "transport/mod.glsl"
@@ -12,7 +13,7 @@
 void add_limited(uint slot, uint depth, Spectrum value, float coverage, uint dither) {
     float largest = spectrum_max(value);
     float factor = 1.0;
-    if (SCENE_HAS_CLAMP && depth != 0u && largest > header.clamp) {
+    if (HAS_CLAMP && depth != 0u && largest > header.clamp) {
         factor = div(header.clamp, largest);
         count_limited();
     }

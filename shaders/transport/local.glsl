@@ -2,6 +2,7 @@
 #ifndef TRANSPORT_LOCAL_GLSL
 #define TRANSPORT_LOCAL_GLSL
 
+#include "layout/features.glsl"
 #include "shading/frame.glsl"
 #include "shading/light.glsl"
 #include "shading/material.glsl"
@@ -96,18 +97,18 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
     if (!is_delta(material) && !hidden && header.light_count != 0u) {
         Frame frame = shading_frame(surface, material, wo);
         bool shadowless = false;
-        if (SCENE_SHADOWLESS) {
+        if (HAS_SHADOWLESS) {
             shadowless = (load_instance(surface.instance).flags & INSTANCE_NO_SHADOW) != 0u;
         }
         for (uint index = 0u; index < header.light_count; index++) {
             Light light = load_light(index);
             LightSample lit = sample_light(light, surface.position);
-            if (SCENE_HAS_SLIDES && light.slide != 0u) lit.radiance *= slide_factor(light, lit.wi);
+            if (HAS_SLIDES && light.slide != 0u) lit.radiance *= slide_factor(light, lit.wi);
             Spectrum seen = light_contribution(weight, material, frame, wo, lit.wi, lit.radiance);
             if (spectrum_max(seen) > 0.0) {
                 vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
                 uint light_dither = dither_hash(key, (DITHER_LIGHT + point.dither) + index);
-                if (header.shadows != 0u && light.casts_shadow != 0u) {
+                if (SHADOWS != SHADOWS_OFF && light.casts_shadow != 0u) {
                     // No ray tests what it leaves: behind it, the surface itself is in the way, if it casts shadows.
                     vec3 wo_local = to_local(frame, wo);
                     vec3 wi_local = to_local(frame, lit.wi);
@@ -128,7 +129,7 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
 
 // Lets the ray go on through a pane.
 void shade_through(PathState path, Surface surface, Material material) {
-    if (SCENE_HAS_PANES && material.k_t > 0.0) {
+    if (HAS_PANES && material.k_t > 0.0) {
         vec4 tint = pane_tint(material);
         PathState through = path;
         through.throughput = path.throughput * tint;

@@ -2,7 +2,7 @@
 #ifndef TRANSPORT_NESTED_GLSL
 #define TRANSPORT_NESTED_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/interior.glsl"
 #include "shading/math.glsl"
 #include "shading/sampling.glsl"

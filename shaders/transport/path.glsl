@@ -10,6 +10,7 @@
 #ifndef TRANSPORT_PATH_GLSL
 #define TRANSPORT_PATH_GLSL
 
+#include "layout/features.glsl"
 #include "shading/bsdf.glsl"
 #include "shading/environment.glsl"
 #include "shading/frame.glsl"
@@ -101,7 +102,7 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
 // Lets the path go on into a direction of the surface.
 void scatter(PathState path, SampleKey key, Surface surface, Material material, Frame frame, vec3 wo) {
     // The last ray can only meet what glows.
-    if (header.glows == 0u && path.depth + 1u >= header.max_depth) {
+    if (!HAS_GLOW && path.depth + 1u >= header.max_depth) {
         return;
     }
     vec3 wo_local = to_local(frame, wo);
@@ -122,7 +123,7 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
     if ((bsdf.flags & SAMPLE_TRANSMIT) != 0u && material.model != MODEL_THIN_DIELECTRIC) {
         next.eta = path.eta * bsdf.eta;
         next.absorption = bsdf.wi.z < 0.0 ? material.absorption : vec3(0.0);
-        if (SCENE_NESTED) {
+        if (HAS_RANKS) {
             next.interior = cross_interface(path.interior, material, bsdf.wi.z < 0.0);
             next.absorption = medium_absorption(next.interior);
         }
@@ -146,14 +147,14 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
 void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uint named, Material material) {
     PathState path = incoming;
     vec3 direction = path.ray.direction;
-    const bool filtered = SCENE_SHADOWS == SHADOWS_FILTERED;
-    if (SCENE_HIDES_EMITTERS && path.depth == 0u && emission_material(material) != vec3(0.0)) {
+    const bool filtered = SHADOWS == SHADOWS_FILTERED;
+    if (HIDES_EMITTERS && path.depth == 0u && emission_material(material) != vec3(0.0)) {
         path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
         path.ray = spawn_through(surface, direction, path.ray.t_max);
         push_path(path);
         return;
     }
-    if (SCENE_HAS_PANES && material.k_t > 0.0) {
+    if (HAS_PANES && material.k_t > 0.0) {
         float own = own_weight(material);
         vec4 tint = pane_tint(material);
         // Each side as often as it is bright.

@@ -2,6 +2,7 @@
 #ifndef TRANSPORT_SHADE_GLSL
 #define TRANSPORT_SHADE_GLSL
 
+#include "layout/features.glsl"
 #include "shading/dielectric.glsl"
 #include "shading/environment.glsl"
 #include "shading/material.glsl"
@@ -26,8 +27,8 @@ void shade(PathState incoming, Hit hit) {
     SampleKey key = sample_key(path.pixel, path.sample_index, path.path_id);
     // Where there are groups, what hit nothing has one of its own.
     if (!(SHADE_GROUPED && SHADE_GROUP != SHADE_GROUP_MISSED) && hit.instance == INVALID) {
-        if (!(straight && header.hide_background != 0u)) {
-            if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
+        if (!(straight && HIDES_BACKGROUND)) {
+            if (INTEGRATOR == INTEGRATOR_PATH) {
                 shade_escape(path, key);
                 return;
             }
@@ -41,7 +42,7 @@ void shade(PathState incoming, Hit hit) {
         return;
     }
     // Light through a medium: Beer's law over the way just travelled (the direction is unit).
-    if (SCENE_HAS_ABSORPTION) {
+    if (HAS_ABSORPTION) {
         path.throughput *= transmittance(path.absorption, hit.t);
     }
     if (spectrum_max(path.throughput) < THROUGHPUT_MIN) {
@@ -51,24 +52,24 @@ void shade(PathState incoming, Hit hit) {
     uint named = surface.material;
     Material material = material_at(path.ray.direction, hit, key, DIMENSION_LEAF, surface);
     NAME_MODEL(material)
-    if (SCENE_SHADOWLESS && HAS_EMITTER(EMITTER_ENVIRONMENT)) {
+    if (HAS_SHADOWLESS && HAS_EMITTER(EMITTER_ENVIRONMENT)) {
         shade_beyond(path, key, surface);
     }
-    if (SCENE_NESTED) {
+    if (HAS_RANKS) {
         if (!meet_interface(path, surface, hit.t, material)) {
             return;
         }
     }
-    if (SCENE_HAS_AOVS && path.path_id == 0u) {
+    if (HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_material(material);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
         add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
-    if (SCENE_INTEGRATOR == INTEGRATOR_PATH) {
+    if (INTEGRATOR == INTEGRATOR_PATH) {
         shade_path(path, key, hit, surface, named, material);
         return;
     }
-    uint flags = SCENE_HAS_FACETS && SCENE_INTEGRATOR == INTEGRATOR_LOCAL ? load_instance(hit.instance).flags : 0u;
+    uint flags = HAS_FACETS && INTEGRATOR == INTEGRATOR_LOCAL ? load_instance(hit.instance).flags : 0u;
     for (uint index = 0u; index < 3u; index++) {
         ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
         Material material_there = material;
@@ -77,12 +78,12 @@ void shade(PathState incoming, Hit hit) {
             NAME_MODEL(material_there)
         }
         shade_local(path, key, point, material_there);
-        if (!SCENE_HAS_FACETS || index + 1u >= shading_points(flags)) {
+        if (!HAS_FACETS || index + 1u >= shading_points(flags)) {
             break;
         }
     }
     shade_through(path, surface, material);
-    if (SCENE_INTEGRATOR == INTEGRATOR_WHITTED && path.depth < header.max_depth) {
+    if (INTEGRATOR == INTEGRATOR_WHITTED && path.depth < header.max_depth) {
         shade_whitted(path, surface, material);
     }
 }

@@ -2,7 +2,8 @@
 #ifndef TRANSPORT_SHADOW_GLSL
 #define TRANSPORT_SHADOW_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "shading/material.glsl"
 #include "shading/spectrum.glsl"
 #include "trace/spawn.glsl"
@@ -20,7 +21,7 @@ const float FAR = 1.0e29;
 // ray that a surface scatters could have found the light: it counts in full. Light from outside the scene is looked for behind
 // such objects, too (`shade_beyond`).
 float way_weight(ShadowRay shadow, float t) {
-    if (!SCENE_SHADOWLESS || shadow.weight >= 1.0 || shadow.ray.t_max > FAR) {
+    if (!HAS_SHADOWLESS || shadow.weight >= 1.0 || shadow.ray.t_max > FAR) {
         return shadow.weight;
     }
     Ray way = shadow.ray;
@@ -49,7 +50,7 @@ void filter_shadow(ShadowRay shadow, Hit hit) {
 // Traces a shadow ray: adds its light where nothing is in the way; with filtered shadows it may go on behind a pane.
 void trace_shadow(ShadowRay shadow) {
     ShadowRay seen = shadow;
-    if (SCENE_SHADOWS == SHADOWS_FILTERED) {
+    if (SHADOWS == SHADOWS_FILTERED) {
         Hit hit = trace_occluder(shadow.ray);
         if (hit.instance != INVALID) {
             seen.weight = way_weight(shadow, hit.t * SHADOW_END);

@@ -2,7 +2,8 @@
 #ifndef TRANSPORT_TEXTURED_GLSL
 #define TRANSPORT_TEXTURED_GLSL
 
-#include "layout/mod.glsl"
+#include "layout/features.glsl"
+#include "layout/records.glsl"
 #include "shading/coordinate.glsl"
 #include "shading/footprint.glsl"
 #include "shading/math.glsl"
@@ -17,7 +18,7 @@
 // `surface.normal`. One loop with one place that fetches, as each place is inlined and costs compile time.
 Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface surface) {
     Material material = bare;
-    if (!SCENE_HAS_TEXTURES || material.texture_count == 0u) {
+    if (!HAS_TEXTURES || material.texture_count == 0u) {
         return material;
     }
     UvGradients gradients = gradients_at(surface, hit);

@@ -2,6 +2,7 @@
 #ifndef TRANSPORT_WHITTED_GLSL
 #define TRANSPORT_WHITTED_GLSL
 
+#include "layout/features.glsl"
 #include "shading/delta.glsl"
 #include "shading/dielectric.glsl"
 #include "shading/frame.glsl"
@@ -80,7 +81,7 @@ void shade_whitted(PathState path, Surface surface, Material material) {
         wi = to_world(frame, refraction.wt);
         inside.eta = entering ? material.eta.x : 1.0;
         inside.absorption = entering ? material.absorption : vec3(0.0);
-        if (SCENE_NESTED) {
+        if (HAS_RANKS) {
             inside.interior = cross_interface(path.interior, material, entering);
             inside.absorption = medium_absorption(inside.interior);
         }

@@ -4,8 +4,8 @@
 //! machine bakes the same bits.
 
 use crate::layout::{
-    ALBEDO_HEADER, ALBEDO_KNOTS, DISTRIBUTION_GAUSSIAN, DISTRIBUTION_SHIFT, MATERIAL_SCHLICK, Material, SceneHeader,
-    SceneView,
+    ALBEDO_HEADER, ALBEDO_KNOTS, DISTRIBUTION_GAUSSIAN, DISTRIBUTION_SHIFT, Features, MATERIAL_SCHLICK, Material,
+    SceneHeader, SceneView,
 };
 use crate::shading::dielectric::refract_local;
 use crate::shading::distribution::{sample_facet, smith_g1};
@@ -127,11 +127,11 @@ pub fn conductor_table(material: &mut Material, tables: &mut Vec<f32>) {
         table: 0,
         ..*material
     };
-    let scene_header = SceneHeader::default();
+    let (scene_header, features) = (SceneHeader::default(), Features::default());
     let constants = header.clone();
     let kind = (material.flags >> DISTRIBUTION_SHIFT) & 3;
     let table = tabulate(material.m0 != material.m0_v, |wo, u| {
-        let scene = SceneView::of_tables(&scene_header, &constants);
+        let scene = SceneView::of_tables(&scene_header, &features, &constants);
         let wi = reflect_about(wo, sample_facet(kind, white.m0, white.m0_v, wo, u));
         let pdf = pdf_rough_conductor(&scene, &white, wo, wi);
         if pdf <= 0.0 {
@@ -150,7 +150,7 @@ pub fn conductor_table(material: &mut Material, tables: &mut Vec<f32>) {
 pub fn kelemen_table(material: &mut Material, tables: &mut Vec<f32>) {
     let mut header = header(material);
     let zeros = [0.0; (ALBEDO_HEADER + ALBEDO_KNOTS) as usize];
-    let scene_header = SceneHeader::default();
+    let (scene_header, features) = (SceneHeader::default(), Features::default());
     let specular = Material { color: Vec3::ZERO, specular_color: Vec3::ONE, table: 0, ..*material };
     let table = tabulate(false, |wo, u| {
         let wm = sample_beckmann(u, specular.m0);
@@ -159,7 +159,7 @@ pub fn kelemen_table(material: &mut Material, tables: &mut Vec<f32>) {
         if cos <= COS_MIN || pdf <= 0.0 {
             return 0.0;
         }
-        f64::from(eval_kelemen(&SceneView::of_tables(&scene_header, &zeros), &specular, wo, wi).x) / pdf
+        f64::from(eval_kelemen(&SceneView::of_tables(&scene_header, &features, &zeros), &specular, wo, wi).x) / pdf
     });
     header[2] = mean(&table) as f32;
     finish(material, &header, &table, tables);

@@ -3,22 +3,15 @@
 use super::BakeError;
 use super::shapes::Shapes;
 use crate::layout::{
-    Emitter, EnvironmentMap, INTEGRATOR_WHITTED, Instance, Light, Material, PARAMETER_MASK, PARAMETER_OPACITY,
-    SceneHeader, SceneView, Texture,
+    EMITTER_TEXTURED, Emitter, EnvironmentMap, Features, HeapStarts, INSTANCE_FLAT, INSTANCE_GOURAUD,
+    INSTANCE_NO_SHADOW, INTEGRATOR_WHITTED, Instance, KIND_SPHERE, Light, Material, PARAMETER_MASK, PARAMETER_OPACITY,
+    SHADOWS_FILTERED, SHADOWS_OPAQUE, SceneHeader, SceneView, T_INFINITE, Texture,
 };
 use crate::shading::material::is_refracting;
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 use std::sync::Arc;
-
-/// One array of the data heap, as it is uploaded.
-#[derive(Clone, Copy, Debug)]
-pub struct HeapPiece<'a> {
-    /// Where it begins, in 16-byte words of the heap.
-    pub first_word: u32,
-    /// Its records; the last word is not always full.
-    pub bytes: &'a [u8],
-}
 
 /// Everything a backend needs, finished: nothing of it changes any more.
 #[derive(Clone, Debug, Default)]
@@ -33,8 +26,10 @@ impl Deref for SceneData {
 }
 
 impl From<SceneArrays> for SceneData {
-    /// Bake's last step. Whoever else calls it answers for the indices: tests make scenes that no bake makes.
-    fn from(arrays: SceneArrays) -> Self {
+    /// Bake's last step: what the arrays use becomes the scene's features. Whoever else calls it answers for the indices: tests
+    /// make scenes that no bake makes.
+    fn from(mut arrays: SceneArrays) -> Self {
+        arrays.features = arrays.used_features();
         Self(arrays)
     }
 }
@@ -45,15 +40,16 @@ impl SceneData {
     pub fn altered(&self, change: impl FnOnce(&mut SceneArrays)) -> Self {
         let mut arrays = self.0.clone();
         change(&mut arrays);
-        Self(arrays)
+        Self::from(arrays)
     }
 }
 
 /// What a baked scene consists of. Indices inside are absolute and valid.
 #[derive(Clone, Debug, Default)]
 pub struct SceneArrays {
-    /// `first_*` members of the header are offsets into the heap that `heap_pieces` describes.
     pub header: SceneHeader,
+    /// What the scene's settings choose is chosen from the start; the rest is what the finished arrays use.
+    pub features: Features,
     /// Hierarchies, triangles, faces and vertices; scenes with the same shapes share them.
     pub shapes: Arc<Shapes>,
     pub instances: Vec<Instance>,
@@ -100,9 +96,43 @@ impl SceneArrays {
         self.textures.iter().any(cuts) || self.materials.iter().any(|material| material.k_t > 0.0)
     }
 
+    /// The features with all that the arrays decide.
+    fn used_features(&self) -> Features {
+        let facets = INSTANCE_FLAT | INSTANCE_GOURAUD;
+        let has_shadowless = self.instances.iter().any(|instance| instance.flags & INSTANCE_NO_SHADOW != 0);
+        let shadows = match self.features.shadows {
+            SHADOWS_FILTERED if !self.has_panes() => SHADOWS_OPAQUE,
+            chosen => chosen,
+        };
+        let open =
+            |light: &Light| light.flaps_min.max_element() <= -T_INFINITE && light.flaps_max.min_element() >= T_INFINITE;
+        let bits = |kinds: &mut dyn Iterator<Item = u32>| kinds.fold(0, |mask, kind| mask | 1 << kind);
+        Features {
+            shadows,
+            models: bits(&mut self.materials.iter().map(|material| material.model)),
+            emitters: bits(&mut self.emitters.iter().map(|emitter| emitter.kind)),
+            formats: bits(&mut self.textures.iter().map(|texture| texture.format)),
+            has_spheres: self.instances.iter().any(|instance| instance.kind == KIND_SPHERE),
+            is_one_instance: self.instances.len() == 1,
+            has_facets: self.instances.iter().any(|instance| instance.flags & facets != 0),
+            has_textures: self.materials.iter().any(|material| material.texture_count > 0),
+            has_textured_emitters: self.emitters.iter().any(|emitter| emitter.flags & EMITTER_TEXTURED != 0),
+            has_environment_map: !self.environments.is_empty(),
+            has_panes: self.has_panes(),
+            has_absorption: self.materials.iter().any(|material| material.absorption != Vec3::ZERO),
+            has_lens: self.header.camera.lens_radius > 0.0,
+            has_flaps: !self.lights.iter().all(open),
+            has_slides: self.lights.iter().any(|light| light.slide != 0),
+            has_shadowless,
+            has_passing: has_shadowless || shadows == SHADOWS_FILTERED,
+            has_clamp: self.header.clamp > 0.0,
+            ..self.features
+        }
+    }
+
     /// Whether more than one ray may go on from where one ends: in Whitted's model, behind glass and panes.
     pub fn branches(&self) -> bool {
-        let whitted = self.header.integrator == INTEGRATOR_WHITTED;
+        let whitted = self.features.integrator == INTEGRATOR_WHITTED;
         whitted && (self.has_panes() || self.materials.iter().any(is_refracting))
     }
 
@@ -110,6 +140,7 @@ impl SceneArrays {
     pub fn view(&self) -> SceneView<'_> {
         SceneView {
             header: &self.header,
+            features: &self.features,
             nodes: &self.shapes.nodes,
             triangles: &self.shapes.triangles,
             instances: &self.instances,
@@ -129,50 +160,26 @@ impl SceneArrays {
     /// BLAKE3 of everything that reaches a sample. The shape of the BVH, the order of its triangles, where arrays lie in the
     /// heap and whether auxiliary values are kept do not, and are left out; so is nothing else.
     pub fn digest(&self) -> [u8; 32] {
-        let mut header = self.header;
-        (header.top_root, header.aovs) = (0, 0);
-        let first = [
-            &mut header.first_instance,
-            &mut header.first_top_instance,
-            &mut header.first_face,
-            &mut header.first_vertex,
-            &mut header.first_material,
-            &mut header.first_light,
-            &mut header.first_texture,
-            &mut header.first_texel,
-            &mut header.first_table,
-            &mut header.first_emitter,
-            &mut header.first_environment_map,
-        ];
-        first.into_iter().for_each(|offset| *offset = 0);
+        let header = SceneHeader { top_root: 0, first: HeapStarts::default(), ..self.header };
+        let features = Features { has_aovs: false, ..self.features }.constants().map(|(_, value)| value);
         let instances: Vec<Instance> =
             self.instances.iter().map(|instance| Instance { root: 0, ..*instance }).collect();
         let mut hasher = blake3::Hasher::new();
-        hasher.update(b"gonio scene 1");
+        hasher.update(b"gonio scene 2");
         // Of the heap, all but the instances, which name their roots, and the order of the top level.
-        let [_, _, rest @ ..] = self.heap_arrays();
-        let placed = [bytemuck::bytes_of(&header), bytemuck::cast_slice(&instances)];
-        for bytes in placed.into_iter().chain(rest) {
+        let view = SceneView { instances: &instances, top_instances: &[], ..self.view() };
+        let placed = [bytemuck::bytes_of(&header), bytemuck::cast_slice(&features)];
+        for bytes in placed.into_iter().chain(view.heap()) {
             hasher.update(&(bytes.len() as u64).to_le_bytes());
             hasher.update(bytes);
         }
         *hasher.finalize().as_bytes()
     }
 
-    /// The data heap: all arrays but nodes and triangles, one after the other, each from a whole 16-byte word on. Four
-    /// top-level instances, texels or table entries share a word. `first_*` of the header are these `first_word`s.
-    pub fn heap_pieces(&self) -> [HeapPiece<'_>; 11] {
-        let mut next = 0;
-        self.heap_arrays().map(|bytes| {
-            let piece = HeapPiece { first_word: next, bytes };
-            next += bytes.len().div_ceil(16) as u32;
-            piece
-        })
-    }
-
-    /// Size of the data heap in 16-byte words.
+    /// Size of the data heap in 16-byte words. Each array begins with a whole word; four top-level instances, texels or table
+    /// entries share one.
     pub fn heap_words(&self) -> u64 {
-        self.heap_arrays().iter().map(|bytes| bytes.len().div_ceil(16) as u64).sum()
+        self.view().heap().iter().map(|bytes| bytes.len().div_ceil(16) as u64).sum()
     }
 
     /// Writes the places of the heap's arrays into the header.
@@ -180,37 +187,12 @@ impl SceneArrays {
         if self.heap_words() > u64::from(u32::MAX) {
             return Err(BakeError::TooLarge { what: "words of data", count: self.heap_words() });
         }
-        let first = self.heap_pieces().map(|piece| piece.first_word);
-        let h = &mut self.header;
-        [
-            h.first_instance,
-            h.first_top_instance,
-            h.first_face,
-            h.first_vertex,
-            h.first_material,
-            h.first_light,
-            h.first_texture,
-            h.first_texel,
-            h.first_table,
-            h.first_emitter,
-            h.first_environment_map,
-        ] = first;
+        let mut next = 0;
+        self.header.first = HeapStarts::from(self.view().heap().map(|bytes| {
+            let first = next;
+            next += bytes.len().div_ceil(16) as u32;
+            first
+        }));
         Ok(())
-    }
-
-    fn heap_arrays(&self) -> [&[u8]; 11] {
-        [
-            bytemuck::cast_slice(&self.instances),
-            bytemuck::cast_slice(&self.shapes.top_instances),
-            bytemuck::cast_slice(&self.shapes.faces),
-            bytemuck::cast_slice(&self.shapes.vertices),
-            bytemuck::cast_slice(&self.materials),
-            bytemuck::cast_slice(&self.lights),
-            bytemuck::cast_slice(&self.textures),
-            bytemuck::cast_slice(&self.texels),
-            bytemuck::cast_slice(&self.tables),
-            bytemuck::cast_slice(&self.emitters),
-            bytemuck::cast_slice(&self.environments),
-        ]
     }
 }

@@ -234,7 +234,6 @@ pub fn bake_surroundings(scene: &Scene, data: &mut SceneArrays) -> f64 {
             baked.map.first_table = data.tables.len() as u32;
             data.tables.extend(baked.table);
             data.environments.push(baked.map);
-            data.header.environment_maps = 1;
             baked.luminance
         }
     }

@@ -10,7 +10,7 @@ const MOST: usize = 255;
 /// Gives each clear body its rank, and the table of media its index and Beer coefficient, if any material of the scene has a
 /// priority. `data.materials` are those of the scene, in their order.
 pub fn rank_media(materials: &[scene::Material], data: &mut SceneArrays) -> Result<(), BakeError> {
-    if data.header.integrator == INTEGRATOR_LOCAL || materials.iter().all(|material| material.priority.is_none()) {
+    if data.features.integrator == INTEGRATOR_LOCAL || materials.iter().all(|material| material.priority.is_none()) {
         return Ok(());
     }
     let clear = |index: &usize| matches!(data.materials[*index].model, MODEL_DIELECTRIC | MODEL_ROUGH_DIELECTRIC);
@@ -19,7 +19,7 @@ pub fn rank_media(materials: &[scene::Material], data: &mut SceneArrays) -> Resu
         return Err(BakeError::Media { count: order.len(), most: MOST });
     }
     order.sort_by_key(|index| materials[*index].priority.unwrap_or(0));
-    data.header.nested = u32::from(!order.is_empty());
+    data.features.has_ranks = !order.is_empty();
     data.header.media_table = data.tables.len() as u32;
     for (rank, index) in (1u16..).zip(order) {
         let material = &mut data.materials[index];

@@ -28,7 +28,7 @@ mod texture;
 mod wide;
 
 pub use albedo::gaussian_scale;
-pub use data::{BakeTimes, HeapPiece, SceneArrays, SceneData};
+pub use data::{BakeTimes, SceneArrays, SceneData};
 pub use scene::{Baker, bake, bake_watched};
 
 use crate::watch::Watch;

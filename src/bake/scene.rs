@@ -10,15 +10,16 @@ use super::srgb::srgb_table;
 use super::texture::{bake_textures, bind_textures};
 use super::{BakeError, BakeTimes, SceneArrays, SceneData};
 use crate::layout::{
-    Camera, FRACTION_BITS, INSTANCE_FLAT, INSTANCE_GOURAUD, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW, INTEGRATOR_LOCAL,
-    INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH, KIND_SPHERE, SAMPLER_INDEPENDENT, SAMPLER_SOBOL,
-    SAMPLER_STRATIFIED, SHADOWS_FILTERED, SHADOWS_OFF, SHADOWS_OPAQUE, SceneHeader,
+    Camera, FRACTION_BITS, Features, INSTANCE_FLAT, INSTANCE_GOURAUD, INSTANCE_MIRRORED, INSTANCE_NO_SHADOW,
+    INTEGRATOR_LOCAL, INTEGRATOR_PATH, INTEGRATOR_WHITTED, INVALID, Instance, KIND_MESH, KIND_SPHERE,
+    SAMPLER_INDEPENDENT, SAMPLER_SOBOL, SAMPLER_STRATIFIED, SHADOWS_FILTERED, SHADOWS_OFF, SHADOWS_OPAQUE, SceneHeader,
 };
 use crate::scene::{
     self, Film, Geometry, Integrator, Material, MaterialId, Object, Projection, Sampler, Scene, Shading, Shadows,
 };
 use crate::shading::material::emission_material;
 use crate::watch::Watch;
+use bytemuck::Zeroable;
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use std::time::Instant;
@@ -67,7 +68,7 @@ fn bake_with(
     shapes: impl FnOnce(&mut BakeTimes) -> Result<Arc<Shapes>, BakeError>,
 ) -> Result<SceneData, BakeError> {
     let start = Instant::now();
-    let mut data = SceneArrays { header: header(scene)?, ..SceneArrays::default() };
+    let mut data = SceneArrays { header: header(scene)?, features: chosen_features(scene), ..SceneArrays::default() };
     bake_tables(&scene.film.filter, &mut data);
     bake_textures(&scene.textures, &mut data);
     check_count("words of texels", data.texels.len())?;
@@ -84,12 +85,7 @@ fn bake_with(
     data.header.instance_count = data.instances.len() as u32;
     data.header.light_count = data.lights.len() as u32;
     data.header.level_count = if data.branches() { data.header.max_depth + 1 } else { 1 };
-    let shadowless = data.instances.iter().any(|instance| instance.flags & INSTANCE_NO_SHADOW != 0);
-    data.header.shadowless = u32::from(shadowless);
     data.header.shadow_rays = shadow_rays(&data);
-    if data.header.shadows == SHADOWS_FILTERED && !data.has_panes() {
-        data.header.shadows = SHADOWS_OPAQUE;
-    }
     data.header.material_count = data.materials.len() as u32;
     data.place_heap()?;
     data.warnings.extend(unused_shading(scene));
@@ -100,10 +96,10 @@ fn bake_with(
 /// Shadow rays of one hit at most: to each light from each of its shading points, or to one emitter, and one that goes on behind
 /// an object without a shadow.
 fn shadow_rays(data: &SceneArrays) -> u32 {
-    let gouraud = data.instances.iter().any(|instance| instance.flags & INSTANCE_GOURAUD != 0);
-    match data.header.integrator {
-        INTEGRATOR_PATH => 1 + data.header.shadowless,
-        _ => data.lights.len() as u32 * if gouraud { 3 } else { 1 },
+    let any = |flag| data.instances.iter().any(|instance| instance.flags & flag != 0);
+    match data.features.integrator {
+        INTEGRATOR_PATH => 1 + u32::from(any(INSTANCE_NO_SHADOW)),
+        _ => data.lights.len() as u32 * if any(INSTANCE_GOURAUD) { 3 } else { 1 },
     }
 }
 
@@ -145,23 +141,23 @@ fn default_material(scene: &Scene) -> MaterialId {
 fn bake_tables(filter: &scene::Filter, data: &mut SceneArrays) {
     data.tables = srgb_table();
     let filter = filter_table(filter);
+    data.features.filter = filter.kind;
     let h = &mut data.header;
-    (h.filter_kind, h.filter_radius, h.filter_norm) = (filter.kind, filter.radius, filter.norm);
-    h.filter_table = data.tables.len() as u32;
+    (h.filter_radius, h.filter_norm, h.filter_table) = (filter.radius, filter.norm, data.tables.len() as u32);
     data.tables.extend(filter.table);
 }
 
 /// The image around the scene and, for path tracing, everything that glows.
 fn bake_light_sources(scene: &Scene, data: &mut SceneArrays) -> Result<(), BakeError> {
     let environment = bake_surroundings(scene, data);
-    if data.header.integrator != INTEGRATOR_PATH {
+    if data.features.integrator != INTEGRATOR_PATH {
         return Ok(());
     }
     if scene.ambient != Vec3::ZERO {
         data.warnings.push("ambient light has no effect under path and direct: light comes from what glows".to_owned());
     }
     let shines = |material: &crate::layout::Material| emission_material(material) != Vec3::ZERO;
-    data.header.glows = u32::from(scene.background.shines() || data.materials.iter().any(shines));
+    data.features.has_glow = scene.background.shines() || data.materials.iter().any(shines);
     bake_emitters(environment, data)
 }
 
@@ -242,6 +238,33 @@ fn instance_shadow(scene: &Scene, object: &Object) -> (bool, Option<String>) {
     (casts, warning)
 }
 
+/// The features that the scene's settings choose; `SceneData` adds what its arrays use.
+fn chosen_features(scene: &Scene) -> Features {
+    let settings = &scene.settings;
+    let hides_emitters = settings.hide_emitters && traced(scene);
+    Features {
+        integrator: match settings.integrator {
+            Integrator::Local => INTEGRATOR_LOCAL,
+            Integrator::Whitted => INTEGRATOR_WHITTED,
+            Integrator::Direct | Integrator::Path => INTEGRATOR_PATH,
+        },
+        sampler: match settings.sampler {
+            Sampler::Sobol => SAMPLER_SOBOL,
+            Sampler::Stratified => SAMPLER_STRATIFIED,
+            Sampler::Independent => SAMPLER_INDEPENDENT,
+        },
+        shadows: match settings.shadows {
+            Shadows::Off => SHADOWS_OFF,
+            Shadows::Opaque => SHADOWS_OPAQUE,
+            Shadows::Filtered => SHADOWS_FILTERED,
+        },
+        has_aovs: settings.aovs,
+        hides_background: settings.transparent || hides_emitters,
+        hides_emitters,
+        ..Features::zeroed()
+    }
+}
+
 /// All of the header that does not depend on the arrays.
 fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
     let settings = &scene.settings;
@@ -253,33 +276,15 @@ fn header(scene: &Scene) -> Result<SceneHeader, BakeError> {
     Ok(SceneHeader {
         camera: camera(&scene.camera, &scene.film)?,
         ambient: scene.ambient,
-        integrator: match settings.integrator {
-            Integrator::Local => INTEGRATOR_LOCAL,
-            Integrator::Whitted => INTEGRATOR_WHITTED,
-            Integrator::Direct | Integrator::Path => INTEGRATOR_PATH,
-        },
         max_depth,
         min_weight: settings.min_weight,
         seed: settings.seed,
-        sampling: match settings.sampler {
-            Sampler::Sobol => SAMPLER_SOBOL,
-            Sampler::Stratified => SAMPLER_STRATIFIED,
-            Sampler::Independent => SAMPLER_INDEPENDENT,
-        },
         // For the sampler that needs them only: otherwise films made with --spp and --samples would differ in their digest.
         strata: if settings.sampler == Sampler::Stratified { strata(settings.samples) } else { 1 },
-        shadows: match settings.shadows {
-            Shadows::Off => SHADOWS_OFF,
-            Shadows::Opaque => SHADOWS_OPAQUE,
-            Shadows::Filtered => SHADOWS_FILTERED,
-        },
         film_scale: libm::ldexp(1.0, exponent) as f32,
         rr_depth: settings.rr_depth,
         // Only paths have scattered light to limit.
         clamp: if traced(scene) { settings.clamp.unwrap_or(0.0) } else { 0.0 },
-        hide_background: u32::from(settings.transparent || settings.hide_emitters && traced(scene)),
-        aovs: u32::from(settings.aovs),
-        hide_emitters: u32::from(settings.hide_emitters && traced(scene)),
         ..SceneHeader::default()
     })
 }

@@ -113,7 +113,7 @@ fn surfaces(scene: &SceneView, rays: &[Seeded]) -> Vec<(Seeded, Surface)> {
 fn scatter(scene: &SceneView, seeded: &Seeded, surface: &Surface, dimension: u32, t_max: f32) -> Seeded {
     let seen_inside = dot3(surface.normal_geometric, seeded.ray.direction) > 0.0;
     let normal = if seen_inside { -surface.normal_geometric } else { surface.normal_geometric };
-    let key = sample_key(scene.header, seeded.pixel, seeded.sample, 0);
+    let key = sample_key(scene, seeded.pixel, seeded.sample, 0);
     let direction = square_to_cosine_hemisphere(sample_2d(key, dimension));
     Seeded { ray: spawn_ray(surface, to_world(frame_from_normal(normal), direction), t_max), ..*seeded }
 }

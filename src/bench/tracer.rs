@@ -2,13 +2,12 @@
 
 use super::rays::{RaySet, answer};
 use crate::bake::SceneData;
-use crate::layout::{Batch, Hit, Ray, ShadowRay};
+use crate::layout::{BINDING_HITS, BINDING_SHADOWS_READ, Batch, Hit, Ray, SET_SCENE, SET_WORK, ShadowRay, WORKGROUP};
 use crate::render::RenderError;
 use crate::render::vulkan::{
-    Bound, Buffer, Context, DeviceChoice, DeviceInfo, Kernel, Place, SceneBuffers, Submission, VulkanOptions,
-    WORKGROUP, specialisation,
+    Bound, Buffer, Context, DeviceChoice, DeviceInfo, Kernel, Place, SceneBuffers, Submission, VulkanOptions, compile,
 };
-use crate::shaders::{self, Fetch};
+use crate::shaders::Fetch;
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -151,12 +150,7 @@ impl VulkanTracer {
         let scene = SceneBuffers::upload(&mut context, data, options.fetch, options.page_limit)?;
         let upload_s = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let constants = specialisation(&scene, data);
-        let compile = |name: &str| {
-            let words = shaders::kernel(name, scene.fetch())
-                .ok_or_else(|| RenderError::Failed(format!("this program was built without the kernel {name}")))?;
-            context.kernel(name, words, &constants, size_of::<Batch>())
-        };
+        let compile = |name| compile(&context, name, scene.fetch(), &scene.variant(), &data.features);
         let (closest, any) = (compile("bench_closest")?, compile("bench_any")?);
         let mut tracer = Self { context, scene, closest, any, setup: Setup::default(), work: None };
         for any in [false, true] {
@@ -181,12 +175,11 @@ impl VulkanTracer {
         let bytes = |record: usize| (count * record) as u64;
         let rays = self.context.buffer("rays", bytes(size_of::<ShadowRay>()), Place::Device)?;
         let hits = self.context.buffer("hits", bytes(size_of::<Hit>()), Place::Device)?;
-        // Bindings of set 1 (`shaders/kernels/bindings.glsl`).
         let scene = &self.scene;
         let find = |set: u32, binding: u32| match (set, binding) {
-            (0, _) => scene.find(binding),
-            (1, 3) => vec![hits.clone()],
-            (1, 11) => vec![rays.clone()],
+            (SET_SCENE, _) => scene.find(binding),
+            (SET_WORK, BINDING_HITS) => vec![hits.clone()],
+            (SET_WORK, BINDING_SHADOWS_READ) => vec![rays.clone()],
             _ => Vec::new(),
         };
         let bound = Bound::new(if any { &self.any } else { &self.closest }, find)?;

@@ -299,6 +299,6 @@ pub fn check_film(crop: Rect) -> Result<(), memory::Shortage> {
 
 /// An empty film for a scene.
 pub fn film_of(scene: &Scene, data: &SceneData, crop: Rect) -> Film {
-    let (transparent, aovs) = (data.header.hide_background != 0, data.header.aovs != 0);
+    let (transparent, aovs) = (data.features.hides_background, data.features.has_aovs);
     Film::new(FilmSpec { crop, ..FilmSpec::of(scene, data.digest(), transparent, aovs) })
 }

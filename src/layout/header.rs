@@ -5,49 +5,42 @@ use glam::Vec3;
 
 use super::camera::Camera;
 
-pub const INTEGRATOR_LOCAL: u32 = 0;
-pub const INTEGRATOR_WHITTED: u32 = 1;
-/// Path tracing; `direct` is its case of one scattering event.
-pub const INTEGRATOR_PATH: u32 = 2;
+/// Where each array of the data heap begins, in 16-byte words. The heap has the arrays in this order; they are those of
+/// `SceneView` with the same names. 44 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct HeapStarts {
+    pub instances: u32,
+    pub top_instances: u32,
+    pub faces: u32,
+    pub vertices: u32,
+    pub materials: u32,
+    pub lights: u32,
+    pub textures: u32,
+    pub texels: u32,
+    pub tables: u32,
+    pub emitters: u32,
+    pub environments: u32,
+}
 
-pub const SAMPLER_SOBOL: u32 = 0;
-pub const SAMPLER_STRATIFIED: u32 = 1;
-pub const SAMPLER_INDEPENDENT: u32 = 2;
-
-pub const SHADOWS_OFF: u32 = 0;
-pub const SHADOWS_OPAQUE: u32 = 1;
-pub const SHADOWS_FILTERED: u32 = 2;
-
-pub const FILTER_BOX: u32 = 0;
-pub const FILTER_TENT: u32 = 1;
-/// Gaussian, Mitchell and other tabulated filters: piecewise constant, sampled through their inverse CDF.
-pub const FILTER_TABLE: u32 = 2;
-
-/// Scene-wide values. 288 bytes. `first_*` are offsets into the data heap in 16-byte words.
+/// Scene-wide values. 256 bytes. What the scene asks for by kind is in `Features`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SceneHeader {
     pub camera: Camera,
     /// I_a of the ambient term (radiance).
     pub ambient: Vec3,
-    /// `INTEGRATOR_*`.
-    pub integrator: u32,
+    pub max_depth: u32,
     /// Radiance where a ray leaves the scene, towards -up and +up of the world (equal for a flat background).
     pub background_bottom: Vec3,
-    pub max_depth: u32,
-    pub background_top: Vec3,
     /// Branches whose largest |throughput| falls below this are cut.
     pub min_weight: f32,
+    pub background_top: Vec3,
     pub seed: u32,
-    /// `SAMPLER_*`.
-    pub sampling: u32,
+    pub first: HeapStarts,
     /// For the stratified sampler: strata per axis, >= 1.
     pub strata: u32,
-    /// `SHADOWS_*`: what becomes of shadow rays.
-    pub shadows: u32,
-    /// `FILTER_*`.
-    pub filter_kind: u32,
-    /// Half width in pixels.
+    /// Half width of the film's filter in pixels.
     pub filter_radius: f32,
     /// Integral of |filter| over integral of filter, both axes: the weight of every sample before its sign.
     pub filter_norm: f32,
@@ -58,28 +51,11 @@ pub struct SceneHeader {
     pub instance_count: u32,
     pub light_count: u32,
     pub material_count: u32,
-    pub first_instance: u32,
-    pub first_top_instance: u32,
-    pub first_face: u32,
-    pub first_vertex: u32,
-    pub first_material: u32,
-    pub first_light: u32,
-    pub first_texture: u32,
-    pub first_texel: u32,
-    pub first_table: u32,
+    pub emitter_count: u32,
     /// 2^film scale: k + e of the fixed-point film (strict rule 8), as a float power of two.
     pub film_scale: f32,
-    /// 1 if the camera does not see the background (it still lights mirrors and glass).
-    pub hide_background: u32,
-    /// 1 if auxiliary values are recorded.
-    pub aovs: u32,
     /// Relative widening of the top level's box test (`approx_intersect_node`): covers the rounding of rays in object space.
     pub top_margin: f32,
-    pub emitter_count: u32,
-    pub first_emitter: u32,
-    /// 1 if an image surrounds the scene, at `first_environment_map`; else the gradient does.
-    pub environment_maps: u32,
-    pub first_environment_map: u32,
     /// First float in the table array of the emitters' alias table: threshold and other emitter's index of each.
     pub emitter_table: u32,
     /// Probability of choosing the environment among the emitters; 0 if it is none.
@@ -90,18 +66,13 @@ pub struct SceneHeader {
     pub clamp: f32,
     /// Levels of pending rays: one per depth where rays branch, else one.
     pub level_count: u32,
-    /// 1 if a ray that has left a surface can meet light: something glows or surrounds the scene (path).
-    pub glows: u32,
     /// Shadow rays that one shaded ray sends, at most.
     pub shadow_rays: u32,
     /// First float in the table array of the media that have a rank: index and Beer coefficient of each, from rank 1 on.
     pub media_table: u32,
-    /// 1 if media are nested by rank.
-    pub nested: u32,
-    /// 1 if some object casts no shadow.
-    pub shadowless: u32,
-    /// 1 if the camera looks through what glows (path).
-    pub hide_emitters: u32,
+    pub _pad0: u32,
+    pub _pad1: u32,
+    pub _pad2: u32,
 }
 
 /// Intervals in the tabulated filter's inverse CDF.

@@ -1,15 +1,21 @@
 //! Every record that crosses the bus between host and device.
 //!
-//! Each file has a twin of the same name in `shaders/layout/`, with the same
-//! struct and member names in the same order (GLSL `scalar` layout). The test
-//! `tests/layout.rs` reflects the compiled SPIR-V and proves offsets, strides
-//! and names equal. Rules: `#[repr(C)]`, `Pod` derived (it rejects hidden
-//! padding), sizes in whole 16-byte words, no `bool`, `usize`, `Vec3A` or enum.
-//! Padding members are named `_pad*` here and `pad*` in GLSL.
+//! They are declared here and nowhere else: `build.rs` reads these files and writes the structs and constants of
+//! the shaders (`layout/records.glsl`), their specialisation constants (`layout/features.glsl`,
+//! `layout/variant.glsl`) and the functions that load and store records by the 16-byte word (`layout/fetch.glsl`).
+//! `tests/layout.rs` reflects the compiled SPIR-V and proves offsets, strides and names equal, and sends every
+//! record through a device.
+//!
+//! Rules: `#[repr(C)]`, `Pod` derived (it rejects hidden padding), members of `u32`, `f32`, vectors, other records
+//! and arrays of them; no `bool`, `usize`, `Vec3A` or enum. Records that kernels load are whole 16-byte words.
+//! Padding is named `_pad*` here and `pad*` in GLSL. A constant is a number. A member that says "Kept if" a feature
+//! is neither loaded nor stored in scenes without the feature.
 
+pub mod bindings;
 pub mod camera;
 pub mod control;
 pub mod emitter;
+pub mod features;
 pub mod film;
 pub mod geometry;
 pub mod header;
@@ -18,9 +24,11 @@ pub mod material;
 pub mod path;
 pub mod texture;
 
+pub use bindings::*;
 pub use camera::*;
 pub use control::*;
 pub use emitter::*;
+pub use features::*;
 pub use film::*;
 pub use geometry::*;
 pub use header::*;
@@ -36,6 +44,7 @@ pub const INVALID: u32 = 0xffff_ffff;
 #[derive(Clone, Copy, Debug)]
 pub struct SceneView<'a> {
     pub header: &'a SceneHeader,
+    pub features: &'a Features,
     pub nodes: &'a [Node],
     pub triangles: &'a [Triangle],
     pub instances: &'a [Instance],
@@ -53,9 +62,10 @@ pub struct SceneView<'a> {
 
 impl<'a> SceneView<'a> {
     /// A scene of nothing but `tables`, for models that look something up.
-    pub fn of_tables(header: &'a SceneHeader, tables: &'a [f32]) -> Self {
+    pub fn of_tables(header: &'a SceneHeader, features: &'a Features, tables: &'a [f32]) -> Self {
         Self {
             header,
+            features,
             nodes: &[],
             triangles: &[],
             instances: &[],
@@ -73,28 +83,24 @@ impl<'a> SceneView<'a> {
     }
 }
 
-// The Rust side of the GLSL `load_*` functions, so that twins read alike.
-macro_rules! loads {
-    ($($name:ident: $array:ident -> $record:ty;)*) => {$(
-        #[inline(always)]
-        pub fn $name(scene: &SceneView, index: u32) -> $record {
-            scene.$array[index as usize]
-        }
-    )*};
+/// A record as Rust lays it out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordLayout {
+    pub name: &'static str,
+    /// Bytes.
+    pub size: usize,
+    /// The array of the scene that holds such records.
+    pub array: Option<&'static str>,
+    pub members: &'static [MemberLayout],
 }
 
-loads! {
-    load_node: nodes -> Node;
-    load_triangle: triangles -> Triangle;
-    load_instance: instances -> Instance;
-    load_top_instance: top_instances -> u32;
-    load_face: faces -> Face;
-    load_vertex: vertices -> Vertex;
-    load_material: materials -> Material;
-    load_light: lights -> Light;
-    load_emitter: emitters -> Emitter;
-    load_environment_map: environments -> EnvironmentMap;
-    load_texture: textures -> Texture;
-    load_texel: texels -> u32;
-    load_table: tables -> f32;
+/// A member of a record: its name and type as GLSL has them, and its first byte.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MemberLayout {
+    pub name: &'static str,
+    pub offset: usize,
+    pub kind: &'static str,
 }
+
+// The Rust side of what `build.rs` writes: `load_*`, the data heap, numbers of specialisation constants, all records.
+include!(concat!(env!("OUT_DIR"), "/layout.rs"));

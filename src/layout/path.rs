@@ -44,7 +44,6 @@ pub struct Hit {
 }
 
 /// A pending ray and all that its shading will need to know. 128 bytes.
-/// The last word is kept only in scenes in which rays pass something (`SCENE_HAS_PASSING` of the kernels).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct PathState {
@@ -72,8 +71,9 @@ pub struct PathState {
     /// Media that the ray is inside of, where they have ranks (`shading/interior`).
     pub interior: u32,
     /// How far before the ray's origin its direction was drawn: the way through what it has passed since (path).
+    /// Kept if `has_passing`.
     pub passed: f32,
-    /// `PATH_*`.
+    /// `PATH_*`. Kept if `has_passing`.
     pub flags: u32,
     pub _pad0: u32,
     pub _pad1: u32,

@@ -307,25 +307,15 @@ fn drop_names(module: &mut Module) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::layout::{Features, Variant};
     use crate::shaders::{Fetch, kernel, names};
+    use bytemuck::Zeroable;
 
     /// One model, one texture format, no rare feature: the least a scene asks for.
-    const LEAST: [(u32, u32); 14] = [
-        (0, 64),
-        (5, 12),
-        (6, 1),
-        (10, 0),
-        (11, 0),
-        (12, 1),
-        (13, 0),
-        (14, 0),
-        (15, 0),
-        (16, 0),
-        (17, 0),
-        (18, 0),
-        (19, 1),
-        (20, 1),
-    ];
+    fn least() -> Vec<(u32, u32)> {
+        let features = Features { models: 1, emitters: 1, formats: 1, is_one_instance: true, ..Features::zeroed() };
+        [&Variant::default().constants()[..], &features.constants()].concat()
+    }
 
     fn specialised(name: &str, fetch: Fetch, constants: &[(u32, u32)]) -> Module {
         let words = specialise(kernel(name, fetch).expect("named by the table"), constants).expect("valid");
@@ -336,7 +326,7 @@ mod tests {
     fn every_id_that_a_specialised_kernel_uses_is_there() {
         for name in names() {
             for fetch in [Fetch::Texel, Fetch::Storage] {
-                let module = specialised(name, fetch, &LEAST);
+                let module = specialised(name, fetch, &least());
                 let defined: HashSet<Word> = module.all_inst_iter().filter_map(|i| i.result_id).collect();
                 for instruction in module.all_inst_iter() {
                     for used in instruction.operands.iter().filter_map(id).chain(instruction.result_type) {
@@ -350,7 +340,7 @@ mod tests {
     #[test]
     fn no_specialisation_constant_is_left() {
         for name in names() {
-            let module = specialised(name, Fetch::Texel, &LEAST);
+            let module = specialised(name, Fetch::Texel, &least());
             for global in &module.types_global_values {
                 let left = matches!(
                     global.class.opcode,
@@ -363,8 +353,8 @@ mod tests {
 
     #[test]
     fn a_model_that_no_material_has_is_cut_from_the_kernel() {
-        let lambert = specialised("shade", Fetch::Texel, &LEAST).functions.len();
-        let all = specialised("shade", Fetch::Texel, &[(6, u32::MAX)]).functions.len();
+        let lambert = specialised("shade", Fetch::Texel, &least()).functions.len();
+        let all = specialised("shade", Fetch::Texel, &Features::default().constants()).functions.len();
         assert!(lambert * 2 < all, "{lambert} of {all} functions are left");
     }
 

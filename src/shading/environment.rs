@@ -166,7 +166,7 @@ fn map_radiance(scene: &SceneView, map: &EnvironmentMap, uv: Vec2) -> Vec3 {
 
 /// Radiance where a ray leaves the scene along `direction` (unit).
 pub fn background(scene: &SceneView, direction: Vec3) -> Spectrum {
-    if scene.header.environment_maps != 0 {
+    if scene.features.has_environment_map {
         let map = load_environment_map(scene, 0);
         let uv = equirectangular_uv(rotate_to(map.to_local, direction));
         return spectrum_from_rgb(map_radiance(scene, &map, uv));
@@ -185,7 +185,7 @@ fn gradient_luminance(scene: &SceneView) -> Vec2 {
 
 /// A direction drawn in proportion to the environment's luminance. `u`: 0..1 each, excluding 1.
 pub fn sample_environment(scene: &SceneView, u: Vec2) -> EnvironmentSample {
-    if scene.header.environment_maps != 0 {
+    if scene.features.has_environment_map {
         let map = load_environment_map(scene, 0);
         let cdfs = map.first_table + (map.height + 2) * map.width;
         let row = find_interval(scene, cdfs + (map.height + 1) * (map.width + 1), map.height + 1, u.y);
@@ -215,7 +215,7 @@ pub fn sample_environment(scene: &SceneView, u: Vec2) -> EnvironmentSample {
 
 /// Density of `sample_environment` at `direction` (unit, world), per solid angle; its integral is 1.
 pub fn pdf_environment(scene: &SceneView, direction: Vec3) -> f32 {
-    if scene.header.environment_maps != 0 {
+    if scene.features.has_environment_map {
         let map = load_environment_map(scene, 0);
         let local = rotate_to(map.to_local, direction);
         let place = grid_place(map.width, map.height, equirectangular_uv(local));

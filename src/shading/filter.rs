@@ -43,10 +43,10 @@ pub fn sample_filter_table(scene: &SceneView, u: f32) -> Vec2 {
 #[inline]
 pub fn sample_filter(scene: &SceneView, u: Vec2) -> FilterSample {
     let radius = scene.header.filter_radius;
-    if scene.header.filter_kind == FILTER_BOX {
+    if scene.features.filter == FILTER_BOX {
         return FilterSample { offset: Vec2::new((2.0 * u.x - 1.0) * radius, (2.0 * u.y - 1.0) * radius), weight: 1.0 };
     }
-    if scene.header.filter_kind == FILTER_TENT {
+    if scene.features.filter == FILTER_TENT {
         return FilterSample { offset: Vec2::new(sample_tent(u.x) * radius, sample_tent(u.y) * radius), weight: 1.0 };
     }
     let x = sample_filter_table(scene, u.x);

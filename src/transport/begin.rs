@@ -7,7 +7,7 @@ use crate::layout::{Batch, PathState, SceneView};
 /// The state of the sample in `slot` before its first ray is traced; its auxiliary channels begin with nothing met.
 pub fn begin_path(scene: &SceneView, batch: &Batch, slot: u32, queues: &mut Queues) -> PathState {
     let path = generate(scene, batch, slot);
-    if scene.header.aovs != 0 {
+    if scene.features.has_aovs {
         miss_aov(queues, &path);
     }
     path

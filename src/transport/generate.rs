@@ -1,7 +1,7 @@
 //! The camera ray of a sample.
 
 use super::{DIMENSION_FILTER, DIMENSION_LENS};
-use crate::layout::{Batch, INVALID, PathState, Ray, SceneHeader, SceneView, T_INFINITE};
+use crate::layout::{Batch, INVALID, PathState, Ray, SceneView, T_INFINITE};
 use crate::shading::camera::{camera_ray, through_lens};
 use crate::shading::filter::sample_filter;
 use crate::shading::sampling::{SampleKey, sample_2d};
@@ -10,8 +10,9 @@ use crate::shading::warp::square_to_disk;
 use glam::Vec3;
 
 /// The key of a path's random numbers: they depend on nothing else.
-pub fn sample_key(header: &SceneHeader, pixel: u32, sample_index: u32, path_id: u32) -> SampleKey {
-    SampleKey { sampling: header.sampling, strata: header.strata, seed: header.seed, pixel, sample_index, path_id }
+pub fn sample_key(scene: &SceneView, pixel: u32, sample_index: u32, path_id: u32) -> SampleKey {
+    let (sampling, strata, seed) = (scene.features.sampler, scene.header.strata, scene.header.seed);
+    SampleKey { sampling, strata, seed, pixel, sample_index, path_id }
 }
 
 /// Pixel of a slot, counted row by row in the crop.
@@ -27,12 +28,12 @@ pub fn generate(scene: &SceneView, batch: &Batch, slot: u32) -> PathState {
     let y = batch.crop_y + index / batch.crop_width; // integer
     let pixel = x | (y << 16);
     let sample_index = batch.first_sample + slot % batch.sample_count; // integer
-    let key = sample_key(scene.header, pixel, sample_index, 0);
+    let key = sample_key(scene, pixel, sample_index, 0);
     let filter = sample_filter(scene, sample_2d(key, DIMENSION_FILTER));
     let film_x = x as f32 + 0.5 + filter.offset.x;
     let film_y = y as f32 + 0.5 + filter.offset.y;
     let mut camera = camera_ray(&scene.header.camera, film_x, film_y);
-    if scene.header.camera.lens_radius > 0.0 {
+    if scene.features.has_lens {
         camera = through_lens(&scene.header.camera, camera, square_to_disk(sample_2d(key, DIMENSION_LENS)));
     }
     PathState {

@@ -19,7 +19,7 @@ pub fn add_limited(
 ) {
     let largest = spectrum_max(value);
     let mut factor = 1.0;
-    if scene.header.clamp > 0.0 && depth != 0 && largest > scene.header.clamp {
+    if scene.features.has_clamp && depth != 0 && largest > scene.header.clamp {
         factor = div(scene.header.clamp, largest);
         count_limited(queues);
     }

@@ -4,7 +4,7 @@ use super::weight::consistent;
 use super::{DITHER_LIGHT, DITHER_SURFACE, LOBE_THROUGH, Queues, add_contribution, push_path, push_shadow};
 use crate::layout::{
     Hit, INSTANCE_NO_SHADOW, Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_ONE_SIDED,
-    MATERIAL_TRANSMISSIVE, Material, PathState, SceneView, ShadowRay, load_instance, load_light,
+    MATERIAL_TRANSMISSIVE, Material, PathState, SHADOWS_OFF, SceneView, ShadowRay, load_instance, load_light,
 };
 use crate::shading::frame::{Frame, frame_from_normal, frame_from_tangent, to_local};
 use crate::shading::light::sample_light;
@@ -115,7 +115,7 @@ pub fn shade_local(
     if !is_delta(material) && !hidden {
         let frame = shading_frame(scene, surface, material, wo);
         let mut shadowless = false;
-        if scene.header.shadowless != 0 {
+        if scene.features.has_shadowless {
             shadowless = (load_instance(scene, surface.instance).flags & INSTANCE_NO_SHADOW) != 0;
         }
         for index in 0..scene.header.light_count {
@@ -128,7 +128,7 @@ pub fn shade_local(
             if spectrum_max(seen) > 0.0 {
                 let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
                 let light_dither = dither_hash(key, (DITHER_LIGHT + point.dither) + index);
-                if scene.header.shadows != 0 && light.casts_shadow != 0 {
+                if scene.features.shadows != SHADOWS_OFF && light.casts_shadow != 0 {
                     // No ray tests what it leaves: behind it, the surface itself is in the way, if it casts shadows.
                     let (wo_local, wi_local) = (to_local(frame, wo), to_local(frame, lit.wi));
                     if shadowless || consistent(&point.shadow_from, wo, lit.wi, wo_local, wi_local) {

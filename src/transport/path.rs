@@ -130,7 +130,7 @@ fn scatter(
     queues: &mut Queues,
 ) {
     // The last ray can only meet what glows.
-    if scene.header.glows == 0 && path.depth + 1 >= scene.header.max_depth {
+    if !scene.features.has_glow && path.depth + 1 >= scene.header.max_depth {
         return;
     }
     let wo_local = to_local(frame, wo);
@@ -151,7 +151,7 @@ fn scatter(
     if (bsdf.flags & SAMPLE_TRANSMIT) != 0 && material.model != MODEL_THIN_DIELECTRIC {
         next.eta = path.eta * bsdf.eta;
         next.absorption = if bsdf.wi.z < 0.0 { material.absorption } else { Vec3::ZERO };
-        if scene.header.nested != 0 {
+        if scene.features.has_ranks {
             next.interior = cross_interface(path.interior, material, bsdf.wi.z < 0.0);
             next.absorption = medium_absorption(scene, next.interior);
         }
@@ -185,8 +185,8 @@ pub fn shade_path(
 ) {
     let mut path = *incoming;
     let direction = path.ray.direction;
-    let filtered = scene.header.shadows == SHADOWS_FILTERED;
-    if scene.header.hide_emitters != 0 && path.depth == 0 && emission_material(material) != Vec3::ZERO {
+    let filtered = scene.features.shadows == SHADOWS_FILTERED;
+    if scene.features.hides_emitters && path.depth == 0 && emission_material(material) != Vec3::ZERO {
         path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
         path.ray = spawn_through(surface, direction, path.ray.t_max);
         push_path(queues, path);

@@ -26,10 +26,10 @@ const THROUGHPUT_MIN: f32 = 1.0e-30;
 pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Queues) {
     let mut path = *incoming;
     let straight = path.depth == 0;
-    let key = sample_key(scene.header, path.pixel, path.sample_index, path.path_id);
+    let key = sample_key(scene, path.pixel, path.sample_index, path.path_id);
     if hit.instance == INVALID {
-        if !(straight && scene.header.hide_background != 0) {
-            if scene.header.integrator == INTEGRATOR_PATH {
+        if !(straight && scene.features.hides_background) {
+            if scene.features.integrator == INTEGRATOR_PATH {
                 shade_escape(scene, &path, key, queues);
                 return;
             }
@@ -53,22 +53,22 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     let mut surface = surface_at(scene, &path.ray, hit);
     let named = surface.material;
     let mut material = material_at(scene, path.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
-    if scene.header.shadowless != 0 && scene.header.environment_density > 0.0 {
+    if scene.features.has_shadowless && scene.header.environment_density > 0.0 {
         shade_beyond(scene, &path, key, &surface, queues);
     }
-    if scene.header.nested != 0 && !meet_interface(scene, &path, &surface, hit.t, &mut material, queues) {
+    if scene.features.has_ranks && !meet_interface(scene, &path, &surface, hit.t, &mut material, queues) {
         return;
     }
-    if scene.header.aovs != 0 && path.path_id == 0 {
+    if scene.features.has_aovs && path.path_id == 0 {
         let albedo = albedo_material(&material);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
         add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
-    if scene.header.integrator == INTEGRATOR_PATH {
+    if scene.features.integrator == INTEGRATOR_PATH {
         shade_path(scene, &path, key, hit, &surface, named, &material, queues);
         return;
     }
-    let local = scene.header.integrator == INTEGRATOR_LOCAL;
+    let local = scene.features.integrator == INTEGRATOR_LOCAL;
     let flags = if local { load_instance(scene, hit.instance).flags } else { 0 };
     for index in 0..shading_points(flags) {
         let mut point = shading_point(scene, &path.ray, hit, &surface, flags, index);
@@ -79,7 +79,7 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
         shade_local(scene, &path, key, &point, &material_there, queues);
     }
     shade_through(scene, &path, &surface, &material, queues);
-    if scene.header.integrator == INTEGRATOR_WHITTED && path.depth < scene.header.max_depth {
+    if scene.features.integrator == INTEGRATOR_WHITTED && path.depth < scene.header.max_depth {
         shade_whitted(scene, &path, &surface, &material, queues);
     }
 }

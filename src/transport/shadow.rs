@@ -19,7 +19,7 @@ const FAR: f32 = 1.0e29;
 /// ray that a surface scatters could have found the light: it counts in full. Light from outside the scene is looked for behind
 /// such objects, too (`shade_beyond`).
 pub fn way_weight(scene: &SceneView, shadow: &ShadowRay, t: f32) -> f32 {
-    if scene.header.shadowless == 0 || shadow.weight >= 1.0 || shadow.ray.t_max > FAR {
+    if !scene.features.has_shadowless || shadow.weight >= 1.0 || shadow.ray.t_max > FAR {
         return shadow.weight;
     }
     let mut way = shadow.ray;
@@ -32,7 +32,7 @@ pub fn way_weight(scene: &SceneView, shadow: &ShadowRay, t: f32) -> f32 {
 /// is drawn anew for each pane and light.
 pub fn filter_shadow(scene: &SceneView, shadow: &ShadowRay, hit: &Hit, queues: &mut Queues) {
     // Every layer has a sequence of its own: indices of one sequence are strata of each other.
-    let key = sample_key(scene.header, shadow.dither, 0, shadow.layer);
+    let key = sample_key(scene, shadow.dither, 0, shadow.layer);
     let mut surface = surface_at(scene, &shadow.ray, hit);
     let material = material_at(scene, shadow.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
     let mut beyond = *shadow;
@@ -48,7 +48,7 @@ pub fn filter_shadow(scene: &SceneView, shadow: &ShadowRay, hit: &Hit, queues: &
 /// Traces a shadow ray: adds its light where nothing is in the way; with filtered shadows it may go on behind a pane.
 pub fn trace_shadow(scene: &SceneView, shadow: &ShadowRay, queues: &mut Queues) {
     let mut seen = *shadow;
-    if scene.header.shadows == SHADOWS_FILTERED {
+    if scene.features.shadows == SHADOWS_FILTERED {
         let hit = trace_occluder(scene, &shadow.ray);
         if hit.instance != INVALID {
             seen.weight = way_weight(scene, shadow, hit.t * SHADOW_END);

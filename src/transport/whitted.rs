@@ -89,7 +89,7 @@ pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, mat
         wi = to_world(frame, refraction.wt);
         inside.eta = if entering { material.eta.x } else { 1.0 };
         inside.absorption = if entering { material.absorption } else { Vec3::ZERO };
-        if scene.header.nested != 0 {
+        if scene.features.has_ranks {
             inside.interior = cross_interface(path.interior, material, entering);
             inside.absorption = medium_absorption(scene, inside.interior);
         }

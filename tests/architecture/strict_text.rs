@@ -17,7 +17,7 @@ fn strict_rust() -> impl Iterator<Item = Source> {
 
 /// Kernels too: they have no Rust twin, but they compute.
 fn strict_glsl() -> impl Iterator<Item = Source> {
-    let folders = STRICT.into_iter().chain(["layout", "kernels"]);
+    let folders = STRICT.into_iter().chain(["kernels"]);
     folders.flat_map(|folder| sources(&format!("shaders/{folder}"), &["glsl", "comp"]))
 }
 

@@ -72,7 +72,7 @@ fn without_priorities_a_body_that_is_left_is_left_for_the_outside() {
     let glass = (0.0, 1.0, clear(GLASS, 0.5, None));
     let drink = (-0.9, 0.2, clear(WATER, 0.25, None));
     let scene = pile(Integrator::Whitted, 4, &[glass.clone(), drink.clone()]);
-    assert_eq!(bake(&scene).unwrap().header.nested, 0);
+    assert!(!bake(&scene).unwrap().features.has_ranks);
     // Air to glass, "air" to drink, "glass" to air, drink to air; each body's absorption until the next interface.
     let wanted = passed(&[AIR, GLASS]) * passed(&[AIR, WATER]) * passed(&[GLASS, AIR]) * passed(&[WATER, AIR]);
     let absorbed = (-(0.5 * 0.8 + 0.25 * 0.2f64)).exp();

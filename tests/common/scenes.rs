@@ -53,7 +53,7 @@ pub fn prepare(path: &Path, take: Take) -> (Scene, SceneData) {
 
 /// An empty film for the whole frame.
 pub fn film(scene: &Scene, data: &SceneData) -> Film {
-    let (transparent, aovs) = (data.header.hide_background != 0, data.header.aovs != 0);
+    let (transparent, aovs) = (data.features.hides_background, data.features.has_aovs);
     Film::new(FilmSpec::of(scene, data.digest(), transparent, aovs))
 }
 

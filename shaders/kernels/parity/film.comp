@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Twins of the film's conversions and of sampling; numbers as in `src/verify/twins/film.rs`.
 #include "kernels/parity/harness.glsl"
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/sampling.glsl"
 #include "shading/spectrum.glsl"
 #include "transport/film.glsl"

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Twins of the reflection models; numbers as in `src/verify/twins/models.rs`: 3 * MODEL_* + {eval and pdf, sample, rest}.
 #include "kernels/parity/harness.glsl"
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/sampling.glsl"
 
 // Where the head of a table for directions of light begins: counts, then knots, light angles and view angles rising, cosines falling.

@@ -4,7 +4,7 @@
 // Twins of the environment's grid, of lights with a size and of a path's decisions; numbers as in
 // `src/verify/twins/path.rs`.
 #include "kernels/parity/harness.glsl"
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/environment.glsl"
 #include "shading/interior.glsl"
 #include "shading/light.glsl"

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Twins of Fresnel terms, microfacets, dielectrics and lights; numbers as in `src/verify/twins/shading.rs`.
 #include "kernels/parity/harness.glsl"
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/dielectric.glsl"
 #include "shading/frame.glsl"
 #include "shading/fresnel.glsl"

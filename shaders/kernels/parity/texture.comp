@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Twins of textures, patterns and what they do to materials and normals; numbers as in `src/verify/twins/texture.rs`.
 #include "kernels/parity/harness.glsl"
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/coordinate.glsl"
 #include "shading/footprint.glsl"
 #include "shading/parameter.glsl"

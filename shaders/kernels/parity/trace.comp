@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Twins of rays and of what they meet; numbers as in `src/verify/twins/trace.rs`.
 #include "kernels/parity/harness.glsl"
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "trace/box_.glsl"
 #include "trace/ray.glsl"
 #include "trace/spawn.glsl"

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Twins of warps, the tent filter, camera, texture coordinates and frames; numbers as in `src/verify/twins/warp.rs`.
 #include "kernels/parity/harness.glsl"
-#include "layout/mod.glsl"
+#include "layout/records.glsl"
 #include "shading/camera.glsl"
 #include "shading/filter.glsl"
 #include "shading/frame.glsl"

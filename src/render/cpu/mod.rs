@@ -107,7 +107,7 @@ impl Renderer for CpuRenderer<'_> {
     fn render(&mut self, job: &Job, watch: &Watch, pass: &mut Pass) -> Result<(), RenderError> {
         let scene = self.data.view();
         let pixel_count = job.crop.width as usize * job.crop.height as usize;
-        let want_aovs = scene.header.aovs != 0;
+        let want_aovs = scene.features.has_aovs;
         let Pass { sums, aovs, .. } = pass;
         sums.clear();
         sums.resize(pixel_count, FilmSum::default());

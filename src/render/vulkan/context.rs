@@ -4,10 +4,11 @@ use super::cache::PipelineCache;
 use super::device::{DeviceChoice, DeviceInfo};
 use super::error::call_failed;
 use super::instance::Instance;
-use super::kernel::{Bound, Kernel, WORKGROUP};
+use super::kernel::{Bound, Kernel};
 use super::memory::{Buffer, Place};
 use super::record::Recorder;
 use super::validation::Messages;
+use crate::layout::Variant;
 use crate::render::RenderError;
 use ash::vk;
 use bytemuck::Pod;
@@ -406,7 +407,7 @@ impl Context {
         let kernel = match self.kernels.get(&key) {
             Some(kernel) => kernel.clone(),
             None => {
-                let kernel = self.kernel(name, words, &[(0, WORKGROUP)], push_constants.len())?;
+                let kernel = self.kernel(name, words, &Variant::default().constants(), push_constants.len())?;
                 self.kernels.entry(key).or_insert(kernel).clone()
             }
         };

@@ -11,8 +11,6 @@ use std::sync::Arc;
 
 /// Bytes of a uniform buffer that every device allows.
 const UNIFORM_RANGE: u64 = 16_384;
-/// Specialisation constant 0 of every kernel: invocations in a workgroup. On lavapipe 32 to 1024 take the same time.
-pub const WORKGROUP: u32 = 64;
 
 /// A compute pipeline; a cheap handle to share.
 #[derive(Clone)]

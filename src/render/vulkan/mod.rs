@@ -28,9 +28,9 @@ pub use device::{
     TEXEL_FETCH_TEXEL_BUFFERS, float_control_names,
 };
 pub use instance::Instance;
-pub use kernel::{Bound, Kernel, WORKGROUP};
+pub use kernel::{Bound, Kernel};
 pub use memory::{Buffer, Place};
-pub use queues::specialisation;
+pub use queues::compile;
 pub use record::Recorder;
 pub use reflect::{Binding, BindingKind, bindings};
 pub use renderer::{VulkanOptions, VulkanRenderer};

@@ -3,7 +3,7 @@
 use super::device::{DeviceInfo, DeviceKind};
 use crate::film::Rect;
 use crate::layout::{
-    AovPixel, Batch, FilmSum, Hit, MAX_SHADE_GROUPS, PathState, SHADOWS_FILTERED, SceneHeader, ShadowRay,
+    AovPixel, Batch, Features, FilmSum, Hit, MAX_SHADE_GROUPS, PathState, SHADOWS_FILTERED, SceneHeader, ShadowRay,
 };
 use crate::render::RenderError;
 use crate::shaders::Fetch;
@@ -42,6 +42,7 @@ impl QueuePlan {
         info: &DeviceInfo,
         fetch: Fetch,
         header: &SceneHeader,
+        features: &Features,
         most: u64,
         chunk: Option<u32>,
     ) -> Result<QueuePlan, RenderError> {
@@ -49,7 +50,7 @@ impl QueuePlan {
         let most = most.min(u64::from(chunk.unwrap_or(u32::MAX)) * 4);
         let mut batch = u64::from(target).min(most.next_power_of_two()) as u32;
         loop {
-            let plan = Self::of_batch(batch, header, chunk);
+            let plan = Self::of_batch(batch, header, features, chunk);
             match plan.too_large(info, fetch) {
                 None => return Ok(plan),
                 Some(_) if batch > 64 => batch /= 2,
@@ -58,14 +59,14 @@ impl QueuePlan {
         }
     }
 
-    fn of_batch(batch: u32, header: &SceneHeader, chunk: Option<u32>) -> QueuePlan {
+    fn of_batch(batch: u32, header: &SceneHeader, features: &Features, chunk: Option<u32>) -> QueuePlan {
         // Four shadow rays for each slot is room for most scenes.
         let rays = header.shadow_rays.max(1);
         let fitting = (u64::from(batch) * 4 / u64::from(rays)).clamp(1, batch.into()) as u32;
         let chunk = fitting.min(chunk.unwrap_or(u32::MAX)).max(1);
         let plan =
             QueuePlan { batch, chunk, levels: header.level_count, shadows: chunk.saturating_mul(rays), halves: 1 };
-        if header.shadows != SHADOWS_FILTERED {
+        if features.shadows != SHADOWS_FILTERED {
             return plan;
         }
         // Room for a chunk beside as many that go on behind panes.
@@ -193,9 +194,10 @@ mod tests {
     #[test]
     fn many_lights_make_chunks_small_instead_of_losing_shadow_rays() {
         let header = SceneHeader { shadow_rays: 1000, level_count: 4, ..SceneHeader::default() };
-        let plan = QueuePlan::of_batch(1 << 16, &header, None);
+        let plan = QueuePlan::of_batch(1 << 16, &header, &Features::default(), None);
         assert_eq!((plan.chunk, plan.shadows, plan.levels), (262, 262_000, 4));
-        let plan = QueuePlan::of_batch(64, &SceneHeader { shadow_rays: 1_000_000, ..header }, None);
+        let plan =
+            QueuePlan::of_batch(64, &SceneHeader { shadow_rays: 1_000_000, ..header }, &Features::default(), None);
         assert_eq!((plan.chunk, plan.shadows), (1, 1_000_000));
     }
 }

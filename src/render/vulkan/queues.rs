@@ -1,19 +1,19 @@
 //! The wavefront on the device: kernels, queues, and the commands of a batch.
 
 use super::context::Context;
-use super::kernel::{Bound, Kernel, WORKGROUP};
+use super::kernel::{Bound, Kernel};
 use super::memory::{Buffer, Place};
 use super::plan::QueuePlan;
 use super::record::Recorder;
 use super::scene::SceneBuffers;
-use crate::bake::SceneData;
 use crate::layout::{
-    Batch, Control, DispatchArguments, EMITTER_TEXTURED, FilmSum, INSTANCE_FLAT, INSTANCE_GOURAUD, INVALID,
-    KIND_SPHERE, Light, MAX_SHADE_GROUPS, MODEL_BLEND, T_INFINITE,
+    BINDING_AOVS, BINDING_CHUNK, BINDING_CHUNK_READ, BINDING_CONTROL, BINDING_FILM, BINDING_FILM_READ, BINDING_HITS,
+    BINDING_HITS_READ, BINDING_LEVELS, BINDING_LEVELS_READ, BINDING_ORDER, BINDING_SHADOWS, BINDING_SHADOWS_READ,
+    BINDING_SLOTS, BINDING_SLOTS_READ, Batch, Control, DispatchArguments, Features, FilmSum, INVALID, MAX_SHADE_GROUPS,
+    MODEL_BLEND, SET_SCENE, SET_WORK, Variant, WORKGROUP,
 };
 use crate::render::RenderError;
 use crate::shaders::{self, Fetch};
-use glam::Vec3;
 use rayon::prelude::*;
 use std::mem::offset_of;
 
@@ -29,27 +29,6 @@ struct Stages<T> {
     resolve: T,
 }
 
-/// Every specialisation constant of a kernel that reads the scene (`shaders/kernels/bindings.glsl`).
-pub fn specialisation(scene: &SceneBuffers, data: &SceneData) -> Vec<(u32, u32)> {
-    let mut constants = vec![(0, WORKGROUP)];
-    constants.extend(scene.constants());
-    constants.extend(scene_constants(data));
-    constants
-}
-
-/// Specialisation constants of which a kernel of one group has values of its own.
-const MODELS_PRESENT: u32 = 6;
-const SHADE_GROUP: u32 = 29;
-const SHADE_MODEL: u32 = 30;
-const SHADE_GROUPED: u32 = 31;
-/// Whether an extend kernel makes camera rays.
-const EXTEND_CAMERA: u32 = 32;
-
-/// Bit n: a material has model n.
-fn models(data: &SceneData) -> u32 {
-    data.materials.iter().fold(0, |mask, material| mask | 1 << material.model)
-}
-
 /// Models that may be met in each group of paths: none where nothing was hit, then for each of the scene's `models` that one
 /// alone. A blend is of any, and a light may be a blend.
 fn shade_groups(models: u32) -> Vec<u32> {
@@ -60,40 +39,18 @@ fn shade_groups(models: u32) -> Vec<u32> {
     std::iter::once(models & blend).chain(hit).collect()
 }
 
-/// Those that say what the scene uses.
-fn scene_constants(data: &SceneData) -> [(u32, u32); 24] {
-    let spheres = data.instances.iter().any(|instance| instance.kind == KIND_SPHERE);
-    let facets = data.instances.iter().any(|instance| instance.flags & (INSTANCE_FLAT | INSTANCE_GOURAUD) != 0);
-    let textures = data.materials.iter().any(|material| material.texture_count > 0);
-    let open =
-        |light: &Light| light.flaps_min.max_element() <= -T_INFINITE && light.flaps_max.min_element() >= T_INFINITE;
-    let flaps = !data.lights.iter().all(open);
-    [
-        (5, data.shapes.stack_depth.max(1)),
-        (MODELS_PRESENT, models(data)),
-        (7, data.header.integrator),
-        (8, data.header.sampling),
-        (9, data.header.filter_kind),
-        (10, u32::from(spheres)),
-        (11, data.header.aovs),
-        (12, data.emitters.iter().fold(0, |mask, emitter| mask | 1 << emitter.kind)),
-        (13, u32::from(data.emitters.iter().any(|emitter| emitter.flags & EMITTER_TEXTURED != 0))),
-        (14, data.header.environment_maps),
-        (15, u32::from(data.has_panes())),
-        (16, u32::from(data.materials.iter().any(|material| material.absorption != Vec3::ZERO))),
-        (17, u32::from(facets)),
-        (18, u32::from(textures)),
-        (19, u32::from(data.instances.len() == 1)),
-        (20, data.textures.iter().fold(0, |mask, texture| mask | 1 << texture.format)),
-        (21, u32::from(data.header.camera.lens_radius > 0.0)),
-        (22, u32::from(flaps)),
-        (23, data.header.shadows),
-        (24, data.header.nested),
-        (25, u32::from(data.lights.iter().any(|light| light.slide != 0))),
-        (26, data.header.shadowless),
-        (27, data.header.hide_emitters),
-        (28, u32::from(data.header.clamp > 0.0)),
-    ]
+/// Compiles a kernel for `variant` and for scenes with no more than `features`.
+pub fn compile(
+    context: &Context,
+    name: &str,
+    fetch: Fetch,
+    variant: &Variant,
+    features: &Features,
+) -> Result<Kernel, RenderError> {
+    let words = shaders::kernel(name, fetch)
+        .ok_or_else(|| RenderError::Failed(format!("this program was built without the kernel {name}")))?;
+    let constants = [&variant.constants()[..], &features.constants()].concat();
+    context.kernel(name, words, &constants, size_of::<Batch>())
 }
 
 /// The compiled kernels of a scene.
@@ -104,36 +61,31 @@ pub struct Kernels {
 }
 
 impl Kernels {
-    /// Compiles for one way of fetching and the values of `specialisation`, and for nothing else. `grouped`: paths are shaded
-    /// in groups by the model they hit. Faster where lanes run in lockstep, but there is more to compile.
+    /// Compiles for a scene and one way of fetching, and for nothing else. `grouped`: paths are shaded in groups by the model
+    /// they hit. Faster where lanes run in lockstep, but there is more to compile.
     pub fn new(
         context: &Context,
-        fetch: Fetch,
-        constants: &[(u32, u32)],
+        scene: &SceneBuffers,
+        features: &Features,
         grouped: bool,
     ) -> Result<Kernels, RenderError> {
-        let make = |name: &str, own: &[(u32, u32)]| {
-            let words = shaders::kernel(name, fetch)
-                .ok_or_else(|| RenderError::Failed(format!("this program was built without the kernel {name}")))?;
-            let all = constants.iter().filter(|(id, _)| own.iter().all(|(other, _)| id != other)).chain(own);
-            context.kernel(name, words, &all.copied().collect::<Vec<_>>(), size_of::<Batch>())
+        let variant = Variant { shade_grouped: grouped, ..scene.variant() };
+        let make = |name, variant: Variant| compile(context, name, scene.fetch(), &variant, features);
+        let shade = |(shade_group, models): (u32, u32)| {
+            let shade_model = if models.count_ones() == 1 { models.trailing_zeros() } else { INVALID };
+            let features = Features { models, ..*features };
+            compile(context, "shade", scene.fetch(), &Variant { shade_group, shade_model, ..variant }, &features)
         };
-        let grouping = (SHADE_GROUPED, u32::from(grouped));
-        let models = constants.iter().find(|(id, _)| *id == MODELS_PRESENT).map_or(u32::MAX, |(_, models)| *models);
-        let shade = |(group, models): (u32, u32)| {
-            let model = if models.count_ones() == 1 { models.trailing_zeros() } else { INVALID };
-            make("shade", &[grouping, (MODELS_PRESENT, models), (SHADE_GROUP, group), (SHADE_MODEL, model)])
-        };
-        let groups = if grouped { shade_groups(models) } else { vec![models] };
+        let groups = if grouped { shade_groups(features.models) } else { vec![features.models] };
         let numbered: Vec<(u32, u32)> = (0..).zip(groups).collect();
         Ok(Kernels {
             stages: Stages {
-                schedule: make("schedule", &[grouping])?,
-                camera: make("extend", &[grouping, (EXTEND_CAMERA, 1)])?,
-                extend: make("extend", &[grouping, (EXTEND_CAMERA, 0)])?,
-                shadow: make("shadow", &[])?,
+                schedule: make("schedule", variant)?,
+                camera: make("extend", Variant { extend_camera: true, ..variant })?,
+                extend: make("extend", variant)?,
+                shadow: make("shadow", variant)?,
                 shade: numbered.into_par_iter().map(shade).collect::<Result<_, _>>()?,
-                resolve: make("resolve", &[])?,
+                resolve: make("resolve", variant)?,
             },
             grouped,
         })
@@ -169,18 +121,17 @@ impl Queues {
         let (levels, chunk, hits, order, shadows, slots) = (levels?, chunk?, hits?, order?, shadows?, slots?);
         let control = context.buffer("control record", size_of::<Control>() as u64, Place::Device)?;
         let control_copy = context.buffer("copy of the control record", control.size(), Place::Readback)?;
-        // Bindings of set 1 (`shaders/kernels/bindings.glsl`).
         let find = |set: u32, binding: u32| match (set, binding) {
-            (0, _) => scene.find(binding),
-            (1, 0) => vec![control.clone()],
-            (1, 1 | 8) => vec![levels.clone()],
-            (1, 2 | 9) => vec![chunk.clone()],
-            (1, 3 | 10) => vec![hits.clone()],
-            (1, 4 | 11) => vec![shadows.clone()],
-            (1, 5 | 13) => vec![slots.clone()],
-            (1, 6 | 14) => vec![film.clone()],
-            (1, 7) => vec![aovs.clone()],
-            (1, 12) => vec![order.clone()],
+            (SET_SCENE, _) => scene.find(binding),
+            (SET_WORK, BINDING_CONTROL) => vec![control.clone()],
+            (SET_WORK, BINDING_LEVELS | BINDING_LEVELS_READ) => vec![levels.clone()],
+            (SET_WORK, BINDING_CHUNK | BINDING_CHUNK_READ) => vec![chunk.clone()],
+            (SET_WORK, BINDING_HITS | BINDING_HITS_READ) => vec![hits.clone()],
+            (SET_WORK, BINDING_SHADOWS | BINDING_SHADOWS_READ) => vec![shadows.clone()],
+            (SET_WORK, BINDING_SLOTS | BINDING_SLOTS_READ) => vec![slots.clone()],
+            (SET_WORK, BINDING_FILM | BINDING_FILM_READ) => vec![film.clone()],
+            (SET_WORK, BINDING_AOVS) => vec![aovs.clone()],
+            (SET_WORK, BINDING_ORDER) => vec![order.clone()],
             _ => Vec::new(),
         };
         let bind = |kernel: &Kernel| Bound::new(kernel, find);

@@ -5,12 +5,12 @@ use super::device::{DeviceChoice, DeviceKind};
 use super::memory::Place;
 use super::pace::{self, Pace, Work};
 use super::plan::{self, QueuePlan};
-use super::queues::{Kernels, Queues, specialisation};
+use super::queues::{Kernels, Queues};
 use super::scene::{FetchChoice, SceneBuffers};
 use super::validation::Messages;
 use crate::bake::SceneData;
 use crate::film::Rect;
-use crate::layout::{AovPixel, Batch, Control, FilmSum, SceneHeader};
+use crate::layout::{AovPixel, Batch, Control, Features, FilmSum, SceneHeader};
 use crate::render::{Bounce, Counters, Job, Pass, RenderError, Renderer};
 use crate::shaders::Fetch;
 use crate::watch::Watch;
@@ -42,7 +42,7 @@ pub struct VulkanRenderer {
     pub(super) context: Context,
     header: SceneHeader,
     scene: SceneBuffers,
-    constants: Vec<(u32, u32)>,
+    features: Features,
     kernels: Kernels,
     group_from: u64,
     /// Samples of all jobs so far.
@@ -95,15 +95,14 @@ impl VulkanRenderer {
         let Ok(choice) = options.device.as_deref().unwrap_or("auto").parse::<DeviceChoice>();
         let mut context = Context::new(&choice, options.validate)?;
         let scene = SceneBuffers::upload(&mut context, data, options.fetch, options.page_limit)?;
-        let constants = specialisation(&scene, data);
         let cpu = context.info().kind == DeviceKind::Cpu;
         let group_from = options.group_from.unwrap_or(if cpu { GROUP_FROM_CPU } else { GROUP_FROM_GPU });
         Ok(VulkanRenderer {
-            kernels: Kernels::new(&context, scene.fetch(), &constants, group_from == 0)?,
+            kernels: Kernels::new(&context, &scene, &data.features, group_from == 0)?,
             context,
             header: data.header,
             scene,
-            constants,
+            features: data.features,
             group_from,
             samples: 0,
             chunk: options.chunk,
@@ -136,8 +135,9 @@ impl VulkanRenderer {
     /// Queues for `slots` samples (or as many as fit) and a film of `pixels`.
     pub(super) fn ready(&mut self, slots: u64, pixels: u64) -> Result<(), RenderError> {
         let film_bytes = pixels * size_of::<FilmSum>() as u64;
-        let aov_bytes = if self.header.aovs != 0 { pixels * size_of::<AovPixel>() as u64 } else { 0 };
-        let plan = QueuePlan::new(self.context.info(), self.scene.fetch(), &self.header, slots, self.chunk)?;
+        let aov_bytes = if self.features.has_aovs { pixels * size_of::<AovPixel>() as u64 } else { 0 };
+        let plan =
+            QueuePlan::new(self.context.info(), self.scene.fetch(), &self.header, &self.features, slots, self.chunk)?;
         if let Some(queues) = &self.queues
             && queues.plan.batch >= plan.batch
             && queues.film.size() >= film_bytes
@@ -160,7 +160,7 @@ impl VulkanRenderer {
     /// All samples of one band, its film read back.
     fn run_band(&mut self, band: Rect, job: &Job, tally: &mut Tally, watch: &Watch) -> Result<(), RenderError> {
         let queues = self.queues.as_ref().expect("made ready by the caller");
-        if self.header.aovs != 0 {
+        if self.features.has_aovs {
             self.context.submit("clearing the auxiliary values", |r| r.clear(&queues.aovs, queues.aovs.size()))?;
         }
         let mut finished: Option<Batch> = None;
@@ -253,13 +253,13 @@ impl Renderer for VulkanRenderer {
 
     fn render(&mut self, job: &Job, watch: &Watch, pass: &mut Pass) -> Result<(), RenderError> {
         let bands =
-            plan::bands(self.context.info(), self.scene.fetch(), job.crop, self.header.aovs != 0, self.page_limit);
+            plan::bands(self.context.info(), self.scene.fetch(), job.crop, self.features.has_aovs, self.page_limit);
         let pixels = bands.iter().map(|band| band.area() as u64).max().unwrap_or(0);
         let samples = u64::from(job.samples.end.saturating_sub(job.samples.start));
         self.samples = self.samples.saturating_add(job.crop.area() as u64 * samples);
         if !self.kernels.grouped && self.samples >= self.group_from {
             self.queues = None; // they hold the old ones
-            self.kernels = Kernels::new(&self.context, self.scene.fetch(), &self.constants, true)?;
+            self.kernels = Kernels::new(&self.context, &self.scene, &self.features, true)?;
         }
         self.ready(pixels * samples, pixels)?;
         let queues = self.queues.as_ref().expect("just made ready");
@@ -270,7 +270,7 @@ impl Renderer for VulkanRenderer {
         // Bands are whole rows from the top: one after the other they are the crop.
         let Pass { sums, aovs, .. } = pass;
         sums.resize(job.crop.area(), FilmSum::default());
-        aovs.resize(if self.header.aovs != 0 { sums.len() } else { 0 }, AovPixel::default());
+        aovs.resize(if self.features.has_aovs { sums.len() } else { 0 }, AovPixel::default());
         let mut at = 0;
         for band in bands {
             self.run_band(band, job, &mut tally, watch)?;

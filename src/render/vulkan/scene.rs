@@ -7,11 +7,14 @@ use super::device::{
 };
 use super::memory::{Buffer, Place};
 use crate::bake::SceneData;
+use crate::layout::{BINDING_DATA, BINDING_HEADER, BINDING_NODES, BINDING_TRIANGLES, HeapStarts, Variant};
 use crate::render::RenderError;
 use crate::shaders::Fetch;
 
-/// Pages a set may have (`shaders/kernels/bindings.glsl`).
-const MAX_PAGES: u64 = 8;
+/// Pages a set may have.
+const MAX_PAGES: u64 = crate::layout::MAX_PAGES as u64;
+/// Arrays in the data heap.
+const HEAP_ARRAYS: usize = size_of::<HeapStarts>() / size_of::<u32>();
 /// Bytes of the word in which pages are fetched.
 const WORD: u64 = 16;
 const SET_NAMES: [&str; 3] = ["BVH nodes", "triangles", "scene data"];
@@ -57,21 +60,10 @@ fn plan_pages(words: [u64; 3], limit: u64) -> Result<PagePlan, String> {
 }
 
 /// The heap's arrays: place of the first byte's word, and the bytes.
-fn heap_parts(data: &SceneData) -> [(u32, &[u8]); 11] {
-    let header = &data.header;
-    [
-        (header.first_instance, bytemuck::cast_slice(&data.instances)),
-        (header.first_top_instance, bytemuck::cast_slice(&data.shapes.top_instances)),
-        (header.first_face, bytemuck::cast_slice(&data.shapes.faces)),
-        (header.first_vertex, bytemuck::cast_slice(&data.shapes.vertices)),
-        (header.first_material, bytemuck::cast_slice(&data.materials)),
-        (header.first_light, bytemuck::cast_slice(&data.lights)),
-        (header.first_texture, bytemuck::cast_slice(&data.textures)),
-        (header.first_texel, bytemuck::cast_slice(&data.texels)),
-        (header.first_table, bytemuck::cast_slice(&data.tables)),
-        (header.first_emitter, bytemuck::cast_slice(&data.emitters)),
-        (header.first_environment_map, bytemuck::cast_slice(&data.environments)),
-    ]
+fn heap_parts(data: &SceneData) -> [(u32, &[u8]); HEAP_ARRAYS] {
+    let starts: [u32; HEAP_ARRAYS] = bytemuck::cast(data.header.first);
+    let arrays = data.view().heap();
+    std::array::from_fn(|k| (starts[k], arrays[k]))
 }
 
 /// Largest page in bytes under a way of fetching.
@@ -153,6 +145,7 @@ pub struct SceneBuffers {
     header: Buffer,
     sets: [Vec<Buffer>; 3],
     shift: u32,
+    stack_depth: u32,
     fetch: Fetch,
 }
 
@@ -185,7 +178,8 @@ impl SceneBuffers {
                 upload_part(context, buffers, page_words * WORD, u64::from(*first) * WORD, bytes)?;
             }
         }
-        Ok(SceneBuffers { header, sets: buffers, shift: plan.shift, fetch })
+        let stack_depth = data.shapes.stack_depth.max(1);
+        Ok(SceneBuffers { header, sets: buffers, shift: plan.shift, stack_depth, fetch })
     }
 
     pub fn fetch(&self) -> Fetch {
@@ -202,17 +196,20 @@ impl SceneBuffers {
         &self.sets[set]
     }
 
-    /// Specialisation constants 1 to 4.
-    pub fn constants(&self) -> [(u32, u32); 4] {
-        let [nodes, triangles, data] = self.page_counts().map(|count| count as u32);
-        [(1, nodes), (2, triangles), (3, data), (4, self.shift)]
+    /// What a kernel that reads the scene is compiled for.
+    pub fn variant(&self) -> Variant {
+        let [node_pages, triangle_pages, data_pages] = self.page_counts().map(|count| count as u32);
+        let (page_shift, stack_depth) = (self.shift, self.stack_depth);
+        Variant { node_pages, triangle_pages, data_pages, page_shift, stack_depth, ..Variant::default() }
     }
 
-    /// The buffers of a binding of set 0.
+    /// The buffers of a binding of the scene's set.
     pub fn find(&self, binding: u32) -> Vec<Buffer> {
         match binding {
-            0 => vec![self.header.clone()],
-            1..=3 => self.sets[binding as usize - 1].clone(),
+            BINDING_HEADER => vec![self.header.clone()],
+            BINDING_NODES => self.sets[0].clone(),
+            BINDING_TRIANGLES => self.sets[1].clone(),
+            BINDING_DATA => self.sets[2].clone(),
             _ => Vec::new(),
         }
     }

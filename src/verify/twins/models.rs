@@ -3,10 +3,10 @@
 
 use super::{Family, In, Out, Twin};
 use crate::layout::{
-    MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE, MODEL_DIELECTRIC,
-    MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR, MODEL_NULL, MODEL_OREN_NAYAR,
-    MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC, MODEL_ROUGH_PLASTIC,
-    MODEL_TABULATED, MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneHeader, SceneView,
+    Features, MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE,
+    MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR, MODEL_NULL,
+    MODEL_OREN_NAYAR, MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC,
+    MODEL_ROUGH_PLASTIC, MODEL_TABULATED, MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneHeader, SceneView,
 };
 use crate::shading::material::{
     albedo_material, ambient_material, emission_material, eval_material, is_delta, is_refracting, mirror_weight,
@@ -45,6 +45,7 @@ const COUNTS: [f32; 5] = [5.0, 6.0, 7.0, 8.0, 2.0];
 /// What `load_table` gives in the kernel: that head, and a hash of the index everywhere else.
 static TABLES: LazyLock<Vec<f32>> = LazyLock::new(|| (0..TABLE as u32).map(table_entry).collect());
 static HEADER: LazyLock<SceneHeader> = LazyLock::new(SceneHeader::default);
+static FEATURES: LazyLock<Features> = LazyLock::new(Features::default);
 
 fn table_entry(index: u32) -> f32 {
     let at = index.wrapping_sub(TABULATED_AT);
@@ -57,7 +58,7 @@ fn table_entry(index: u32) -> f32 {
 }
 
 fn tables() -> SceneView<'static> {
-    SceneView::of_tables(&HEADER, &TABLES)
+    SceneView::of_tables(&HEADER, &FEATURES, &TABLES)
 }
 
 fn material(i: &In, model: u32) -> Material {
