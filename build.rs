@@ -9,6 +9,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
+#[path = "shaders/build/blocks.rs"]
+mod blocks;
 #[path = "shaders/build/compile.rs"]
 mod compile;
 #[path = "shaders/build/emit.rs"]
@@ -24,6 +26,7 @@ const FOLDERS: [(&str, &str); 2] = [("kernels", ""), ("kernels/parity", "parity/
 fn main() {
     println!("cargo::rerun-if-changed=shaders");
     println!("cargo::rerun-if-changed=src/layout");
+    println!("cargo::rerun-if-changed=src/shading/closure.rs");
     if let Err(errors) = write_layout().and_then(|()| embed_kernels()) {
         for line in errors {
             println!("cargo::error={line}");
@@ -35,7 +38,7 @@ fn main() {
 fn write_layout() -> Result<(), BTreeSet<String>> {
     let one = |message: String| BTreeSet::from([message]);
     let (root, out) = folders();
-    let schema = schema::Schema::read(&root.join("src/layout")).map_err(one)?;
+    let schema = schema::Schema::read(&root.join("src/layout"), &root.join("src/shading/closure.rs")).map_err(one)?;
     fs::create_dir_all(out.join("layout")).map_err(|e| one(e.to_string()))?;
     for (name, text) in emit::files(&schema).map_err(one)? {
         fs::write(out.join(name), text).map_err(|e| one(format!("{name}: {e}")))?;

@@ -15,25 +15,25 @@ use glam::{Vec2, Vec3};
 use gonio::layout::{MATERIAL_TRANSMISSIVE, MODEL_BLEND, MODEL_EMISSIVE};
 use gonio::scene::{Distribution, Lobe, Masking, Material, Model, Rgb, WardNormalisation};
 use gonio::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
-use gonio::shading::material::{eval_material, is_delta, pdf_material, sample_material};
+use gonio::shading::material::{eval_closure, is_delta, pdf_closure, sample_closure};
 use known::{GOLD, Known, WHITE, models, rough, white};
 use std::f64::consts::{PI, TAU};
 
 /// Views of a material: from outside, and from inside where it has one.
 fn views(baked: &Baked) -> Vec<Vec3> {
     let mut views = vec![direction(1.0, 0.0), direction(0.7, 0.5), direction(0.2, 4.0)];
-    if baked.material().flags & MATERIAL_TRANSMISSIVE != 0 {
+    if baked.closure().flags & MATERIAL_TRANSMISSIVE != 0 {
         views.extend([direction(-0.95, 1.0), direction(-0.5, 3.0)]);
     }
     views
 }
 
 fn value(baked: &Baked, wo: Vec3, wi: Vec3) -> f64 {
-    f64::from(eval_material(&baked.view(), &baked.material(), wo, wi).y)
+    f64::from(eval_closure(&baked.view(), &baked.closure(), wo, wi).y)
 }
 
 fn pdf(baked: &Baked, wo: Vec3, wi: Vec3) -> f64 {
-    f64::from(pdf_material(&baked.view(), &baked.material(), wo, wi))
+    f64::from(pdf_closure(&baked.view(), &baked.closure(), wo, wi))
 }
 
 /// A direction of the whole sphere, uniform.
@@ -47,7 +47,7 @@ fn every_sampler_follows_its_density_over_the_sphere() {
     let count = models.iter().map(|known| views(&known.baked).len()).sum();
     for Known { name, baked, .. } in &models {
         for wo in views(baked) {
-            let draws = Draws::new(baked.view(), baked.material(), wo, 60_000);
+            let draws = Draws::new(baked.view(), baked.closure(), wo, 60_000);
             let (result, integral) = draws.against_density();
             assert!(result.p_value > sidak(1e-3, count), "{name} {wo}: {result:?}, integral {integral}");
             assert!(integral < 1.0 + 2e-3, "{name} {wo}: pdf integrates to {integral}");
@@ -59,21 +59,21 @@ fn every_sampler_follows_its_density_over_the_sphere() {
 #[test]
 fn weights_are_f_cos_over_pdf_and_flags_tell_the_side() {
     for Known { name, baked, .. } in models() {
-        let m = baked.material();
+        let m = baked.closure();
         let mut random = Random(5);
         for _ in 0..2000 {
             let wo = match m.flags & MATERIAL_TRANSMISSIVE {
                 0 => random.upper_direction(),
                 _ => any_direction(&mut random),
             };
-            let sample = sample_material(&baked.view(), &m, wo, random.unit2(), random.unit());
+            let sample = sample_closure(&baked.view(), &m, wo, random.unit2(), random.unit());
             if sample.pdf <= 0.0 || sample.flags & SAMPLE_DELTA != 0 {
                 continue;
             }
             assert!((sample.wi.length() - 1.0).abs() < 3e-6, "{name}: {}", sample.wi);
             let transmitted = sample.wi.z * wo.z < 0.0;
             assert_eq!(sample.flags & SAMPLE_TRANSMIT != 0, transmitted, "{name} {wo} {}", sample.wi);
-            let eta = if wo.z > 0.0 { m.eta.x } else { 1.0 / m.eta.x };
+            let eta = if wo.z > 0.0 { m.eta } else { 1.0 / m.eta };
             assert!((sample.eta - if transmitted { eta } else { 1.0 }).abs() < 1e-6, "{name}");
             let (f, p) = (value(&baked, wo, sample.wi), pdf(&baked, wo, sample.wi));
             assert!((f64::from(sample.pdf) - p).abs() <= 1e-5 * p, "{name}: {} {p}", sample.pdf);
@@ -86,7 +86,7 @@ fn weights_are_f_cos_over_pdf_and_flags_tell_the_side() {
 fn what_each_model_keeps_of_its_samples_is_at_most_what_came() {
     for Known { name, baked, albedo, .. } in models() {
         for wo in views(&baked) {
-            let draws = Draws::new(baked.view(), baked.material(), wo, 60_000);
+            let draws = Draws::new(baked.view(), baked.closure(), wo, 60_000);
             // The mean weight is the directional albedo; of transmitted radiance, weighed by eta^2.
             let kept = draws.mean(|sample| f64::from(sample.weight.max_element() * (sample.eta * sample.eta)));
             assert!(kept.value - 4.0 * kept.error <= albedo + 2e-3, "{name} {wo}: {kept:?}");
@@ -97,7 +97,7 @@ fn what_each_model_keeps_of_its_samples_is_at_most_what_came() {
 
 /// `MODEL_*` and its number, for each.
 fn numbers() -> Vec<(&'static str, u32)> {
-    let lines = include_str!("../src/layout/material.rs").lines();
+    let lines = include_str!("../src/layout/model.rs").lines();
     let models =
         lines.filter_map(|line| line.strip_prefix("pub const MODEL_")?.strip_suffix(';')?.split_once(": u32 = "));
     models.map(|(name, number)| (name, number.parse().expect("a number"))).collect()
@@ -108,10 +108,10 @@ fn no_model_is_left_out_of_these_proofs_or_of_parity() {
     let (models, numbers) = (models(), numbers());
     assert!(numbers.len() >= 22, "{numbers:?}");
     for (name, number) in &numbers {
-        let listed = models.iter().any(|known| known.baked.material().model == *number);
-        let record = gonio::layout::Material { model: *number, ..Default::default() };
+        let listed = models.iter().any(|known| known.baked.closure().model == *number);
+        let closure = gonio::shading::closure::Closure { model: *number, ..Default::default() };
         // What has no density: lobes of zero width, and what only shines or is made of others.
-        let none = is_delta(&record) || matches!(*number, MODEL_EMISSIVE | MODEL_BLEND);
+        let none = is_delta(&closure) || matches!(*number, MODEL_EMISSIVE | MODEL_BLEND);
         assert!(listed != none, "MODEL_{name} has no row in tests/common/known.rs");
     }
     // eval with pdf, sample, and the rest of each, in the order of their numbers.
@@ -162,7 +162,7 @@ fn no_model_reflects_more_than_it_receives_at_any_roughness() {
             let baked = Baked::new(material);
             for z in [1.0, 0.6, 0.2, 0.05] {
                 let wo = direction(z, 0.3);
-                let draws = Draws::new(baked.view(), baked.material(), wo, 10_000);
+                let draws = Draws::new(baked.view(), baked.closure(), wo, 10_000);
                 let kept = draws.mean(|sample| f64::from(sample.weight.max_element()));
                 // Oren and Nayar's equation 30 is a fit to their integrals: half a percent too bright at its worst.
                 let most = if name == "oren-nayar" { 1.008 } else { 1.002 };
@@ -175,7 +175,7 @@ fn no_model_reflects_more_than_it_receives_at_any_roughness() {
 
 /// Largest relative difference between f and its reverse over random pairs; radiance is divided by eta^2 of its side.
 fn largest_asymmetry(baked: &Baked, pairs: u32) -> f64 {
-    let m = baked.material();
+    let m = baked.closure();
     let mut random = Random(7);
     let mut largest = 0.0f64;
     for _ in 0..pairs {
@@ -183,7 +183,7 @@ fn largest_asymmetry(baked: &Baked, pairs: u32) -> f64 {
             0 => (random.upper_direction(), random.upper_direction()),
             _ => (any_direction(&mut random), any_direction(&mut random)),
         };
-        let side = |w: Vec3| if w.z > 0.0 { 1.0 } else { f64::from(m.eta.x) * f64::from(m.eta.x) };
+        let side = |w: Vec3| if w.z > 0.0 { 1.0 } else { f64::from(m.eta) * f64::from(m.eta) };
         let forth = value(baked, wo, wi) / f64::from(wi.z.abs()) / side(wo);
         let back = value(baked, wi, wo) / f64::from(wo.z.abs()) / side(wi);
         // Small values count by what they add.
@@ -236,7 +236,7 @@ fn a_compensated_white_metal_reflects_everything_at_any_roughness() {
                 let mut sum = 0.0;
                 for _ in 0..count {
                     let (u, u_lobe) = (random.unit2(), random.unit());
-                    let sample = sample_material(&single.view(), &single.material(), wo, u, u_lobe);
+                    let sample = sample_closure(&single.view(), &single.closure(), wo, u, u_lobe);
                     sum += if sample.pdf > 0.0 { f64::from(sample.weight.y) } else { 0.0 };
                 }
                 // What the rest adds depends on the light's cosine alone, x^2 for the sake of grazing angles.
@@ -294,13 +294,13 @@ fn what_is_seen_of_all_facets_covers_what_is_seen_of_the_surface() {
 fn smooth_models_have_lobes_of_zero_width_with_fresnel_s_shares() {
     let share = |material: &Material, wo: Vec3| {
         let baked = Baked::new(material.clone());
-        let m = baked.material();
+        let m = baked.closure();
         assert!(is_delta(&m));
         assert_eq!(value(&baked, wo, direction(0.5, 1.0)), 0.0);
         let mut random = Random(3);
         let (mut mirrored, count) = (0u32, 20_000);
         for _ in 0..count {
-            let sample = sample_material(&baked.view(), &m, wo, random.unit2(), random.unit());
+            let sample = sample_closure(&baked.view(), &m, wo, random.unit2(), random.unit());
             assert!(sample.flags & SAMPLE_DELTA != 0 && sample.pdf > 0.0);
             mirrored += u32::from(sample.flags & SAMPLE_TRANSMIT == 0);
         }
@@ -322,9 +322,9 @@ fn smooth_models_have_lobes_of_zero_width_with_fresnel_s_shares() {
 #[test]
 fn what_refracts_is_scaled_by_the_square_of_the_index() {
     let baked = Baked::new(white(Model::Dielectric { eta: 1.5, absorption: Rgb::ZERO }));
-    let sample = sample_material(&baked.view(), &baked.material(), Vec3::Z, Vec2::splat(0.5), 0.9);
+    let sample = sample_closure(&baked.view(), &baked.closure(), Vec3::Z, Vec2::splat(0.5), 0.9);
     assert!((sample.weight.x - 1.0 / 2.25).abs() < 1e-6 && sample.eta == 1.5);
-    let sample = sample_material(&baked.view(), &baked.material(), -Vec3::Z, Vec2::splat(0.5), 0.9);
+    let sample = sample_closure(&baked.view(), &baked.closure(), -Vec3::Z, Vec2::splat(0.5), 0.9);
     assert!((sample.weight.x - 2.25).abs() < 1e-5 && (sample.eta - 1.0 / 1.5).abs() < 1e-6);
 }
 
@@ -381,7 +381,7 @@ fn the_visible_gaussian_is_normalised_by_bake() {
     for m in [0.1f32, 0.3, 0.8] {
         let baked = Baked::new(white(lobe(m)));
         let d = |wm: Vec3| {
-            f64::from(gonio::shading::cook_torrance::lobe_d(&baked.view(), &baked.material(), 0, wm)) * f64::from(wm.z)
+            f64::from(gonio::shading::cook_torrance::lobe_d(&baked.view(), &baked.closure(), 0, wm)) * f64::from(wm.z)
         };
         let whole = integrate_cell(&d, (0.0, 1.0), (0.0, TAU), 256);
         assert!((whole - 1.0).abs() < 2e-3, "{m}: {whole}");
@@ -393,7 +393,7 @@ fn a_plastic_s_base_and_coat_share_the_light_as_its_tables_say() {
     // A white base under a smooth coat loses nothing: 1 - F(o) enters, all of it comes out again.
     let smooth = Baked::new(white(Model::Plastic { eta: 1.5, nonlinear: true }));
     // Diffuse reflectance from inside at 1.5: .5963 (Egan and Hilgeman 1973, table 1: .596).
-    assert!((smooth.material().extra - 0.5963).abs() < 1e-3, "{}", smooth.material().extra);
+    assert!((smooth.closure().inner_reflectance - 0.5963).abs() < 1e-3, "{}", smooth.closure().inner_reflectance);
     for z in [1.0, 0.5, 0.2] {
         let wo = direction(z, 0.0);
         let base = integrate_cell(&|wi| value(&smooth, wo, wi), (0.0, 1.0), (0.0, TAU), 64);

@@ -7,7 +7,7 @@ mod scenes;
 
 use glam::DVec3;
 use gonio::bake::bake;
-use gonio::layout::{DISTRIBUTION_PHONG, DISTRIBUTION_SHIFT, MATERIAL_ANISOTROPIC, MATERIAL_D_1982, MATERIAL_SCHLICK};
+use gonio::layout::{DISTRIBUTION_PHONG, MATERIAL_ANISOTROPIC, MATERIAL_D_1982, MATERIAL_SCHLICK};
 use gonio::render::vulkan::{VulkanOptions, VulkanRenderer};
 use gonio::scene::Fresnel;
 use gonio::scene::load::load;
@@ -135,7 +135,13 @@ fn a_white_metal_of_other_facets_has_their_printed_and_their_own_values() {
     let angles = [(70.0, 50.0), (40.0, 85.0), (20.0, 20.0)];
     let alpha = libm::sqrt(0.5);
     for (view, light) in angles {
-        sets.push(metal(polar(view, 0.0), polar(light, 170.0), DISTRIBUTION_PHONG << DISTRIBUTION_SHIFT, alpha, alpha));
+        sets.push(metal(
+            polar(view, 0.0),
+            polar(light, 170.0),
+            DISTRIBUTION_PHONG << models::DISTRIBUTION_AT,
+            alpha,
+            alpha,
+        ));
     }
     let results = Sides::new().words(&models::FAMILY, "eval_rough_conductor pdf_rough_conductor", &sets);
     let masked = |w: DVec3| {

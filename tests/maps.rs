@@ -6,11 +6,12 @@ use common::*;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use gonio::bake::{BakeError, SceneData, bake};
 use gonio::layout::{
-    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, INVALID, Material as Record, PARAMETER_ANISOTROPIC,
-    PARAMETER_MASK, PARAMETER_METALLIC, PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U,
-    PARAMETER_ROUGHNESS_V, PARAMETER_WEIGHT, Ray, T_INFINITE,
+    CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, INVALID, PARAMETER_ANISOTROPIC, PARAMETER_MASK,
+    PARAMETER_METALLIC, PARAMETER_OPACITY, PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U, PARAMETER_ROUGHNESS_V,
+    PARAMETER_WEIGHT, Ray, T_INFINITE,
 };
 use gonio::scene::*;
+use gonio::shading::closure::{Closure, closure_of};
 use gonio::shading::footprint::{Footprint, UvGradients, cone_footprint, mapped_normal, raised_normal};
 use gonio::shading::parameter::apply_parameter;
 use gonio::shading::pattern::{checker, fractal_noise, gradient_noise, square_mean, zone_plate};
@@ -20,7 +21,7 @@ use gonio::trace::surface::{Surface, surface_at};
 use gonio::trace::tangent::{gradients_at, sphere_tangents};
 use gonio::trace::traverse::trace_closest;
 use gonio::transport::DIMENSION_LEAF;
-use gonio::transport::textured::material_at;
+use gonio::transport::resolve::resolve_material;
 use std::sync::Arc;
 
 /// A square from -1 to 1 in x and y, facing +z, uv 0..1 to the right and up, or as `uv` makes them.
@@ -52,13 +53,13 @@ fn constant(texel: [f32; 4]) -> Texture {
 }
 
 /// The surface with its maps applied, and before.
-fn seen(data: &SceneData, ray: &Ray) -> (Record, Surface, Surface) {
+fn seen(data: &SceneData, ray: &Ray) -> (Closure, Surface, Surface) {
     let view = data.view();
     let hit = trace_closest(&view, ray);
     assert_ne!(hit.instance, INVALID, "missed");
     let before = surface_at(&view, ray, &hit);
     let mut surface = before;
-    let material = material_at(&view, ray.direction, &hit, key(0), DIMENSION_LEAF, &mut surface);
+    let material = resolve_material(&view, ray.direction, &hit, key(0), DIMENSION_LEAF, &mut surface);
     (material, surface, before)
 }
 
@@ -84,8 +85,8 @@ fn a_texture_on_the_weight_of_a_blend_chooses_its_materials() {
         let hit = trace_closest(&view, &ray);
         let seconds = (0..4000).filter(|&index| {
             let mut surface = surface_at(&view, &ray, &hit);
-            let material = material_at(&view, ray.direction, &hit, key(index), DIMENSION_LEAF, &mut surface);
-            assert_eq!(data.materials[surface.material as usize].color, material.color);
+            let material = resolve_material(&view, ray.direction, &hit, key(index), DIMENSION_LEAF, &mut surface);
+            assert_eq!(closure_of(&view, &data.materials[surface.material as usize]).color, material.color);
             material.color.x == 0.75
         });
         let found = seconds.count() as f32 / 4000.0;
@@ -400,42 +401,70 @@ fn each_parameter_takes_its_texture() {
     let eye = ray(Vec3::new(0.1, 0.2, 3.0), Vec3::NEG_Z);
     for (parameter, texel) in cases {
         let data = textured(Some(square(|c| c)), Transform::default(), constant(texel), parameter, 2.0);
-        let rough = Record { m0: 0.25, m1: 0.125, m0_v: 0.5, m1_v: 0.75, ..data.materials[0] };
-        let plain = Record { specular_color: Vec3::ONE, emission: Vec3::ONE, ..rough };
-        let data = data.altered(|data| data.materials[0] = plain);
+        let data = data.altered(|data| data.materials[0].emission = Vec3::ONE);
         let (got, ..) = seen(&data, &eye);
-        let mut want = plain;
+        let mut want = closure_of(&data.view(), &data.materials[0]);
         let factor = Vec3::new(1.0, 0.5, 0.25);
         match parameter {
-            Parameter::Color => want.color = factor,
-            Parameter::SpecularColor => want.specular_color = factor,
-            Parameter::Emission => want.emission = factor,
+            Parameter::Color => want.color *= factor,
+            Parameter::SpecularColor => want.specular_color *= factor,
+            Parameter::Emission => want.emission *= factor,
+            Parameter::Roughness => apply_parameter(&mut want, PARAMETER_ROUGHNESS, Vec3::ONE, 1.0),
             _ => {}
         }
         assert_eq!(got, want, "{parameter:?}");
     }
-    let record = Record { m0: 0.4, m1: 0.2, m0_v: 0.8, m1_v: 0.1, extra: 0.5, ..Record::default() };
-    assert_eq!(apply_parameter(record, PARAMETER_ROUGHNESS, Vec3::splat(0.5), 1.0).m0, 0.2);
-    assert_eq!(apply_parameter(record, PARAMETER_ROUGHNESS, Vec3::ZERO, 1.0).m0, 1.0e-3, "never sharper than this");
-    let along = apply_parameter(record, PARAMETER_ROUGHNESS_U, Vec3::splat(0.5), 1.0);
-    assert_eq!([along.m0, along.m1, along.m0_v, along.m1_v], [0.2, 0.1, 0.8, 0.1]);
-    let across = apply_parameter(record, PARAMETER_ROUGHNESS_V, Vec3::splat(0.5), 1.0);
-    assert_eq!([across.m0, across.m1, across.m0_v, across.m1_v], [0.4, 0.2, 0.4, 0.05]);
-    assert_eq!(apply_parameter(record, PARAMETER_METALLIC, Vec3::splat(0.5), 1.0).extra, 0.25);
-    assert_eq!(apply_parameter(record, PARAMETER_WEIGHT, Vec3::splat(4.0), 1.0).extra, 1.0, "at most 1");
-    let shares = Record { k: Vec3::new(0.1, 0.2, 0.3), w0: 0.4, w1: 0.5, k_d: 0.6, k_s: 0.7, exponent: 0.8, ..record };
+    let applied = |closure: Closure, parameter, texel: f32| {
+        let mut closure = closure;
+        apply_parameter(&mut closure, parameter, Vec3::splat(texel), 1.0);
+        closure
+    };
+    let plain = Closure {
+        alpha_u: 0.4,
+        second_alpha_u: 0.2,
+        alpha_v: 0.8,
+        second_alpha_v: 0.1,
+        roughness: 0.3,
+        metallic: 0.5,
+        blend: 0.5,
+        ..Closure::default()
+    };
+    let rough = applied(plain, PARAMETER_ROUGHNESS, 0.5);
+    assert_eq!([rough.alpha_u, rough.roughness], [0.2, 0.15]);
+    assert_eq!(applied(plain, PARAMETER_ROUGHNESS, 0.0).alpha_u, 1.0e-3, "never sharper than this");
+    let of = |c: Closure| [c.alpha_u, c.second_alpha_u, c.alpha_v, c.second_alpha_v];
+    assert_eq!(of(applied(plain, PARAMETER_ROUGHNESS_U, 0.5)), [0.2, 0.1, 0.8, 0.1]);
+    assert_eq!(of(applied(plain, PARAMETER_ROUGHNESS_V, 0.5)), [0.4, 0.2, 0.4, 0.05]);
+    assert_eq!(applied(plain, PARAMETER_METALLIC, 0.5).metallic, 0.25);
+    assert_eq!(applied(plain, PARAMETER_WEIGHT, 4.0).blend, 1.0, "at most 1");
+    let shares = Closure {
+        anisotropic: 0.1,
+        spec_trans: 0.2,
+        spec_tint: 0.3,
+        sheen: 0.4,
+        sheen_tint: 0.5,
+        flatness: 0.6,
+        clearcoat: 0.7,
+        clearcoat_gloss: 0.8,
+        ..plain
+    };
+    let of = |c: Closure| {
+        let first = [c.anisotropic, c.spec_trans, c.spec_tint, c.sheen];
+        [first, [c.sheen_tint, c.flatness, c.clearcoat, c.clearcoat_gloss]].concat()
+    };
     for which in 0..8 {
-        let applied = apply_parameter(shares, PARAMETER_ANISOTROPIC + which, Vec3::splat(0.5), 1.0);
-        let of = |m: Record| [m.k.x, m.k.y, m.k.z, m.w0, m.w1, m.k_d, m.k_s, m.exponent];
         let mut want = of(shares);
         want[which as usize] *= 0.5;
-        assert_eq!(of(applied), want, "{which}");
+        assert_eq!(of(applied(shares, PARAMETER_ANISOTROPIC + which, 0.5)), want, "{which}");
     }
-    assert_eq!(apply_parameter(record, PARAMETER_OPACITY, Vec3::splat(0.25), 1.0).k_t, 0.75);
-    let half = Record { k_t: 0.5, ..record };
-    assert_eq!(apply_parameter(half, PARAMETER_OPACITY, Vec3::splat(0.5), 1.0).k_t, 0.75, "half of a half");
-    assert_eq!(apply_parameter(half, PARAMETER_MASK, Vec3::ONE, 0.5).k_t, 0.0);
-    assert_eq!(apply_parameter(half, PARAMETER_MASK, Vec3::splat(0.9), 0.5).k_t, 1.0);
+    assert_eq!(applied(plain, PARAMETER_OPACITY, 0.25).k_t, 0.75);
+    let masked = |texel: f32| {
+        let mut half = Closure { k_t: 0.5, ..plain };
+        apply_parameter(&mut half, PARAMETER_MASK, Vec3::splat(texel), 0.5);
+        half.k_t
+    };
+    assert_eq!(applied(Closure { k_t: 0.5, ..plain }, PARAMETER_OPACITY, 0.5).k_t, 0.75, "half of a half");
+    assert_eq!((masked(1.0), masked(0.9)), (0.0, 1.0));
 }
 
 #[test]

@@ -13,12 +13,13 @@ use gonio::bake::{SceneData, bake};
 use gonio::layout::MODEL_BLEND;
 use gonio::scene::load::load;
 use gonio::scene::*;
-use gonio::shading::material::eval_material;
+use gonio::shading::closure::closure_of;
+use gonio::shading::material::eval_closure;
 use gonio::shading::sampling::SampleKey;
 use gonio::trace::surface::surface_at;
 use gonio::trace::traverse::trace_closest;
 use gonio::transport::DIMENSION_LEAF;
-use gonio::transport::textured::material_at;
+use gonio::transport::resolve::resolve_material;
 use std::f64::consts::FRAC_1_PI;
 use std::fs;
 use std::path::Path;
@@ -162,7 +163,7 @@ fn paths_meet_the_materials_of_a_blend_by_their_shares() {
     let met = |material: u32, key: SampleKey| {
         let mut surface = surface_at(&view, &ray, &hit);
         surface.material = material;
-        material_at(&view, ray.direction, &hit, key, DIMENSION_LEAF, &mut surface).color.x
+        resolve_material(&view, ray.direction, &hit, key, DIMENSION_LEAF, &mut surface).color.x
     };
     let mut counts = [0u32; 3];
     let samples = 40_000;
@@ -199,15 +200,16 @@ fn measured(table: Table) -> SceneData {
 #[test]
 fn a_measured_table_gives_its_values_back_wherever_light_and_viewer_are() {
     let data = measured(merl_table(|theta_h, theta_d| theta_h + 10.0 * theta_d));
+    let closure = closure_of(&data.view(), &data.materials[0]);
     let mut random = Random(3);
     for _ in 0..5000 {
         let (wo, wi) = (random.upper_direction(), random.upper_direction());
         let h = (wo.as_dvec3() + wi.as_dvec3()).normalize();
         let (theta_h, theta_d) = (libm::acos(h.z.min(1.0)), libm::acos(h.dot(wi.as_dvec3()).min(1.0)));
-        let f = f64::from(eval_material(&data.view(), &data.materials[0], wo, wi).x) / f64::from(wi.z);
+        let f = f64::from(eval_closure(&data.view(), &closure, wo, wi).x) / f64::from(wi.z);
         // Half a cell of theta_d counts .087 here, half one of theta_h up to .017.
         assert!((f - theta_h - 10.0 * theta_d).abs() < 0.11, "{wo} {wi}: {f}");
-        let back = f64::from(eval_material(&data.view(), &data.materials[0], wi, wo).x) / f64::from(wo.z);
+        let back = f64::from(eval_closure(&data.view(), &closure, wi, wo).x) / f64::from(wo.z);
         assert!((f - back).abs() < 0.2, "{wo} {wi}: {f} {back}");
     }
 }
@@ -215,15 +217,16 @@ fn a_measured_table_gives_its_values_back_wherever_light_and_viewer_are() {
 #[test]
 fn samples_of_a_measured_table_follow_their_density_and_its_shine() {
     let data = measured(merl_table(|theta_h, _| 0.05 + 3.0 * libm::exp(-(theta_h / 0.3).powi(2))));
-    let (view, material) = (data.view(), data.materials[0]);
+    let view = data.view();
+    let closure = closure_of(&view, &data.materials[0]);
     for z in [1.0, 0.6, 0.2] {
         let wo = direction(z, 0.5);
-        let draws = Draws::new(view, material, wo, 60_000);
+        let draws = Draws::new(view, closure, wo, 60_000);
         let (result, integral) = draws.against_density();
         assert!(result.p_value > 1e-4, "{z}: {result:?}");
         assert!(integral < 1.01, "{z}: {integral}");
         let mean = draws.mean(|sample| f64::from(sample.weight.x));
-        let expected = integrate_hemisphere(&|wi| f64::from(eval_material(&view, &material, wo, wi).x), 96);
+        let expected = integrate_hemisphere(&|wi| f64::from(eval_closure(&view, &closure, wo, wi).x), 96);
         assert!((mean.value - expected).abs() < 4.5 * mean.error + 5e-3, "{z}: {mean:?}, {expected}");
         // Drawn from the table: the deviation of one weight stays near the mean.
         assert!(mean.deviation < 1.5 * mean.value, "{z}: {mean:?}");

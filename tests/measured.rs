@@ -17,7 +17,8 @@ use gonio::bake::{SceneData, bake};
 use gonio::layout::{MATERIAL_ANISOTROPIC, MODEL_MEASURED, MODEL_TABULATED};
 use gonio::scene::load::load;
 use gonio::scene::*;
-use gonio::shading::material::eval_material;
+use gonio::shading::closure::closure_of;
+use gonio::shading::material::eval_closure;
 use std::f64::consts::{FRAC_1_PI, PI};
 use std::fs;
 use std::path::Path;
@@ -43,7 +44,7 @@ fn table(bytes: &[u8]) -> SceneData {
 
 /// The BRDF of the first material for light and view.
 fn brdf(data: &SceneData, light: Vec3, view: Vec3) -> [f64; 3] {
-    let value = eval_material(&data.view(), &data.materials[0], view, light);
+    let value = eval_closure(&data.view(), &closure_of(&data.view(), &data.materials[0]), view, light);
     [value.x, value.y, value.z].map(|v| f64::from(v) / f64::from(light.z))
 }
 
@@ -55,7 +56,7 @@ fn ward(alpha_u: f32, alpha_v: f32) -> impl Fn(Vec3, Vec3) -> [f64; 3] {
     let material = Material { color, specular_color, k_d: 1.0, k_s: 0.7, model, ..Material::grey("ward") };
     let baked = Baked::new(material);
     move |light, view| {
-        let value = eval_material(&baked.view(), &baked.material(), view, light);
+        let value = eval_closure(&baked.view(), &baked.closure(), view, light);
         [value.x, value.y, value.z].map(|v| f64::from(v) / f64::from(light.z))
     }
 }
@@ -185,14 +186,15 @@ fn samples_of_a_table_follow_their_density_and_what_it_reflects() {
     let views = [direction(1.0, 0.0), direction(0.8, 0.4), direction(0.5, 2.0), direction(0.2, 5.5)];
     let significance = sidak(1e-3, cases.len() * views.len());
     for (name, data) in &cases {
-        let (view, material) = (data.view(), data.materials[0]);
+        let view = data.view();
+        let closure = closure_of(&view, &data.materials[0]);
         for wo in views {
-            let draws = Draws::new(view, material, wo, 60_000);
+            let draws = Draws::new(view, closure, wo, 60_000);
             let (result, integral) = draws.against_density();
             assert!(result.p_value > significance, "{name} {wo}: {result:?}");
             assert!((integral - 1.0).abs() < 5e-3, "{name} {wo}: {integral}");
             let mean = draws.mean(|sample| f64::from(sample.weight.x));
-            let value = |wi| f64::from(eval_material(&view, &material, wo, wi).x);
+            let value = |wi| f64::from(eval_closure(&view, &closure, wo, wi).x);
             let expected = integrate_hemisphere(&value, 96);
             assert!((mean.value - expected).abs() < 4.5 * mean.error + 3e-3, "{name} {wo}: {mean:?}, {expected}");
             // What cosine-weighted directions would deviate by.
@@ -237,7 +239,7 @@ fn the_brushed_table_of_the_scenes_is_what_its_head_says() {
     let model = Model::RoughConductor { distribution, alpha_u, alpha_v, fresnel, compensate: false };
     let metal = Baked::new(Material { model, ..Material::grey("metal") });
     let value = |light: Vec3, view: Vec3| {
-        [f64::from(eval_material(&metal.view(), &metal.material(), view, light).x) / f64::from(light.z); 3]
+        [f64::from(eval_closure(&metal.view(), &metal.closure(), view, light).x) / f64::from(light.z); 3]
     };
     let expected = grid.float_file(value);
     if std::env::var_os("GONIO_UPDATE").is_some() {
@@ -369,8 +371,10 @@ fn the_two_tables_of_the_assets_render_as_what_they_are() {
         assert!((path[24 * 48 + 34] - local[24 * 48 + 34]).abs().max_element() < 1e-3, "{name}");
         // What it reflects of white light from everywhere is no more than that.
         let wo = direction(0.8, 0.0);
-        let albedo =
-            integrate_hemisphere(&|wi| f64::from(eval_material(&data.view(), &data.materials[0], wo, wi).y), 96);
+        let albedo = integrate_hemisphere(
+            &|wi| f64::from(eval_closure(&data.view(), &closure_of(&data.view(), &data.materials[0]), wo, wi).y),
+            96,
+        );
         assert!((0.05..1.0).contains(&albedo), "{name}: {albedo}");
         drop(scene);
     }

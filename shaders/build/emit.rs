@@ -5,13 +5,15 @@
 //! * `layout/variant.glsl`: those that say what a kernel is compiled for, and the size of its workgroups.
 //! * `layout/fetch.glsl`: `load_*` and `store_*`, for kernels that have defined `fetch_*` and `put_*`.
 //! * `layout/proof.glsl`: every record and constant once, for the parity kernel of the layout.
-//! * `layout.rs`: the Rust side of `load_*`, the heap, the numbers of specialisation constants, and a list of all records.
+//! * `layout/closure.glsl`, `layout/blocks.glsl`: the closure, and how it is unpacked from its model's block (`blocks`).
+//! * `layout.rs`, `closure.rs`: the Rust side of `load_*`, the heap, the numbers of specialisation constants, and a list of all records.
 
+use crate::blocks;
 use crate::schema::{Array, Constant, Member, Record, Schema, Shape, Value};
 use std::fmt::Write as _;
 
 /// Bytes of the word in which kernels fetch.
-const WORD: usize = 16;
+pub const WORD: usize = 16;
 
 /// Records that travel outside the scene's arrays: through `fetch_NAME`, and if they are stored through `put_NAME`.
 const STREAMS: [(&str, &str, bool); 5] = [
@@ -36,12 +38,15 @@ pub fn files(schema: &Schema) -> Result<Vec<(&'static str, String)>, String> {
         ("layout/variant.glsl", guarded("VARIANT", &switches(schema, "Variant"))),
         ("layout/fetch.glsl", fetch(schema)?),
         ("layout/proof.glsl", proof(schema)),
+        ("layout/closure.glsl", blocks::closure(schema)),
+        ("layout/blocks.glsl", blocks::unpack(schema)?),
         ("layout.rs", rust(schema)),
+        ("closure.rs", blocks::rust(schema)?),
     ])
 }
 
 /// `PathState` is `path_state` where functions are named after it.
-fn snake(name: &str) -> String {
+pub fn snake(name: &str) -> String {
     let mut result = String::new();
     for (at, letter) in name.char_indices() {
         if letter.is_uppercase() && at > 0 {
@@ -53,7 +58,7 @@ fn snake(name: &str) -> String {
 }
 
 /// The prefix of a type whose lanes are floats, integers or booleans.
-fn glsl_type(shape: &Shape) -> String {
+pub fn glsl_type(shape: &Shape) -> String {
     match shape {
         Shape::Lanes(1, true) => "float".into(),
         Shape::Lanes(1, false) => "uint".into(),
@@ -66,20 +71,20 @@ fn glsl_type(shape: &Shape) -> String {
 }
 
 /// `vec4 to_world[3]`.
-fn declaration(member: &Member) -> String {
+pub fn declaration(member: &Member) -> String {
     match &member.shape {
         Shape::Array(element, length) => format!("{} {}[{length}]", glsl_type(element), member.name),
         shape => format!("{} {}", glsl_type(shape), member.name),
     }
 }
 
-fn comment(text: &mut String, indent: &str, doc: &[String]) {
+pub fn comment(text: &mut String, indent: &str, doc: &[String]) {
     for line in doc {
         let _ = writeln!(text, "{}", format!("{indent}// {line}").trim_end());
     }
 }
 
-fn guarded(name: &str, body: &str) -> String {
+pub fn guarded(name: &str, body: &str) -> String {
     let guard = format!("LAYOUT_{name}_GLSL");
     format!(
         "// Written by the build from src/layout.\n#ifndef {guard}\n#define {guard}\n#extension GL_EXT_scalar_block_layout : require\n{body}\n#endif\n"
@@ -103,7 +108,7 @@ fn bytes(schema: &Schema, shape: &Shape) -> usize {
     }
 }
 
-fn record_bytes(schema: &Schema, record: &Record) -> usize {
+pub fn record_bytes(schema: &Schema, record: &Record) -> usize {
     record.members.iter().map(|member| bytes(schema, &member.shape)).sum()
 }
 
@@ -174,17 +179,23 @@ fn mask(member: &Member) -> Option<(String, String)> {
 }
 
 /// Part of a record that fits into lanes: its path (`ray.origin`, `to_world[1]`), first byte, lanes, whether floats.
-struct Leaf {
-    path: String,
-    at: usize,
-    lanes: usize,
-    is_float: bool,
+pub struct Leaf {
+    pub path: String,
+    pub at: usize,
+    pub lanes: usize,
+    pub is_float: bool,
     /// The feature without which its word is not kept.
     kept_if: Option<String>,
 }
 
 /// Lists the leaves of a record; an error for what cannot be loaded by the word.
-fn leaves(schema: &Schema, record: &Record, prefix: &str, mut at: usize, found: &mut Vec<Leaf>) -> Result<(), String> {
+pub fn leaves(
+    schema: &Schema,
+    record: &Record,
+    prefix: &str,
+    mut at: usize,
+    found: &mut Vec<Leaf>,
+) -> Result<(), String> {
     for member in &record.members {
         let path = format!("{prefix}{}", member.name);
         let kept_if =
@@ -215,7 +226,7 @@ fn leaves(schema: &Schema, record: &Record, prefix: &str, mut at: usize, found: 
 }
 
 /// The runs of lanes that `at..at + 4 * lanes` takes: word, first lane in it, how many.
-fn runs(at: usize, lanes: usize) -> Vec<(usize, usize, usize)> {
+pub fn runs(at: usize, lanes: usize) -> Vec<(usize, usize, usize)> {
     let mut found = Vec::new();
     let (mut lane, end) = (at / 4, at / 4 + lanes);
     while lane < end {
@@ -227,11 +238,24 @@ fn runs(at: usize, lanes: usize) -> Vec<(usize, usize, usize)> {
 }
 
 /// `w2.xyz`, or `w2` for all four.
-fn swizzle(name: &str, first: usize, count: usize) -> String {
+pub fn swizzle(name: &str, first: usize, count: usize) -> String {
     match count {
         4 => name.to_owned(),
         _ => format!("{name}.{}", &"xyzw"[first..first + count]),
     }
+}
+
+/// A leaf as an expression of the words `w0`, `w1` and so on.
+pub fn leaf_value(leaf: &Leaf) -> String {
+    let pieces: Vec<_> = runs(leaf.at, leaf.lanes)
+        .into_iter()
+        .map(|(word, first, count)| swizzle(&format!("w{word}"), first, count))
+        .collect();
+    let lanes = match &pieces[..] {
+        [one] => one.clone(),
+        several => format!("uvec{}({})", leaf.lanes, several.join(", ")),
+    };
+    if leaf.is_float { format!("uintBitsToFloat({lanes})") } else { lanes }
 }
 
 /// The feature on which a word depends: that of all its leaves, padding apart.
@@ -267,16 +291,7 @@ fn load(schema: &Schema, record: &Record, fetch: &str, base: &str) -> Result<Str
         .map_err(|e| e.to_string())?;
         let ends_here = |leaf: &&Leaf| (leaf.at + 4 * leaf.lanes - 1) / WORD == word;
         for leaf in parts.iter().filter(ends_here) {
-            let pieces: Vec<_> = runs(leaf.at, leaf.lanes)
-                .into_iter()
-                .map(|(word, first, count)| swizzle(&format!("w{word}"), first, count))
-                .collect();
-            let lanes = match &pieces[..] {
-                [one] => one.clone(),
-                several => format!("uvec{}({})", leaf.lanes, several.join(", ")),
-            };
-            let value = if leaf.is_float { format!("uintBitsToFloat({lanes})") } else { lanes };
-            let _ = writeln!(text, "    r.{} = {value};", leaf.path);
+            let _ = writeln!(text, "    r.{} = {};", leaf.path, leaf_value(leaf));
         }
     }
     text.push_str("    return r;\n}\n");
@@ -354,6 +369,10 @@ fn fetch(schema: &Schema) -> Result<String, String> {
                     false => writeln!(text, "uint load_{name}(uint index) {{ return {lane}; }}"),
                 };
             }
+            Shape::Lanes(4, false) => {
+                let name = singular(&array.name);
+                let _ = writeln!(text, "uvec4 load_{name}(uint index) {{ return fetch_data({first} + index); }}");
+            }
             _ => return Err(format!("{} holds neither records nor words", array.name)),
         }
     }
@@ -398,6 +417,7 @@ fn rust_type(shape: &Shape) -> &str {
     match shape {
         Shape::Record(name) => name,
         Shape::Lanes(1, true) => "f32",
+        Shape::Lanes(4, false) => "[u32; 4]",
         _ => "u32",
     }
 }

@@ -15,6 +15,7 @@ pub struct Constant {
 }
 
 /// The value of a constant.
+#[derive(Clone)]
 pub enum Value {
     Uint(u32),
     /// The decimals as written.
@@ -60,6 +61,10 @@ pub struct Schema {
     pub arrays: Vec<Array>,
     /// Names of the arrays in the data heap, in its order.
     pub heap: Vec<String>,
+    /// Models in the order of their numbers, each with the record of its parameters; none if it has no parameters.
+    pub models: Vec<(Constant, Option<String>)>,
+    /// Members of a closure, which never crosses the bus.
+    pub closure: Vec<Member>,
     /// Specialisation constants in the order of their numbers: what a kernel is compiled for, and what the scene uses.
     pub switches: Vec<Switch>,
 }
@@ -77,21 +82,29 @@ pub struct Switch {
 const VIEW: &str = "SceneView";
 const VARIANT: &str = "Variant";
 const FEATURES: &str = "Features";
+const CLOSURE: &str = "Closure";
+/// What names of models' constants begin with, and those of their blocks end with.
+const MODEL: &str = "MODEL_";
+const BLOCK: &str = "Block";
 /// The record whose members are where the heap's arrays begin.
 const HEAP: &str = "HeapStarts";
 
 impl Schema {
-    /// Reads all files of `folder` (`src/layout`). The error says what is not understood, and in which file.
-    pub fn read(folder: &Path) -> Result<Schema, String> {
+    /// Reads all files of `folder` (`src/layout`), and the file that declares the closure. The error says what is not understood,
+    /// and in which file.
+    pub fn read(folder: &Path, closure: &Path) -> Result<Schema, String> {
         let entries = std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
         let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
         paths.retain(|path| path.extension().is_some_and(|extension| extension == "rs"));
         paths.sort();
+        paths.push(closure.to_owned());
         let mut schema = Schema {
             constants: Vec::new(),
             records: Vec::new(),
             arrays: Vec::new(),
             heap: Vec::new(),
+            models: Vec::new(),
+            closure: Vec::new(),
             switches: Vec::new(),
         };
         let mut files = Vec::new();
@@ -118,6 +131,7 @@ impl Schema {
         }
         schema.switches.sort_by_key(|switch| switch.of != VARIANT);
         schema.order_records()?;
+        schema.find_blocks(&files.iter().map(|(_, file)| file).collect::<Vec<_>>())?;
         schema.check()?;
         Ok(schema)
     }
@@ -164,7 +178,7 @@ impl Schema {
         }
         let known = [VARIANT, FEATURES].into_iter().find(|known| *known == name);
         let is_record = item.attrs.iter().any(|attribute| attribute.path().is_ident("repr"));
-        if !is_record && known.is_none() {
+        if !is_record && known.is_none() && name != CLOSURE {
             return Ok(());
         }
         let mut members = Vec::new();
@@ -175,6 +189,7 @@ impl Schema {
             members.push(Member { name: name.trim_start_matches('_').to_owned(), shape, doc: doc(&field.attrs) });
         }
         match known {
+            _ if name == CLOSURE => self.closure = members,
             Some(of) => self.switches.extend(members.into_iter().map(|member| Switch { of, member, default: 0 })),
             None => {
                 if name == HEAP {
@@ -237,6 +252,31 @@ impl Schema {
             ordered.push(waiting.remove(at));
         }
         self.records = ordered;
+        Ok(())
+    }
+
+    /// The block of each model.
+    fn find_blocks(&mut self, files: &[&syn::File]) -> Result<(), String> {
+        let empty: Vec<String> = files
+            .iter()
+            .flat_map(|file| &file.items)
+            .filter_map(|item| match item {
+                Item::Struct(item) if matches!(item.fields, Fields::Unit) => Some(item.ident.to_string()),
+                _ => None,
+            })
+            .collect();
+        for constant in self.constants.iter().filter(|constant| constant.name.starts_with(MODEL)) {
+            let words = constant.name[MODEL.len()..].split('_');
+            let camel = words.map(|word| format!("{}{}", &word[..1], word[1..].to_lowercase())).collect::<String>();
+            let block = format!("{camel}{BLOCK}");
+            let found = match self.record(&block) {
+                Some(_) => Some(block),
+                None if empty.contains(&block) => None,
+                None => return Err(format!("{} has no {block}", constant.name)),
+            };
+            let constant = Constant { name: constant.name.clone(), value: constant.value.clone(), doc: Vec::new() };
+            self.models.push((constant, found));
+        }
         Ok(())
     }
 

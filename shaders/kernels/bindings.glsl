@@ -12,9 +12,6 @@
 #include "layout/records.glsl"
 #include "layout/variant.glsl"
 
-// Said of a material once it is found, so that drivers leave out what the one model of a group excludes.
-#define NAME_MODEL(material) if (SHADE_MODEL != INVALID) material.model = SHADE_MODEL;
-
 layout(set = SET_SCENE, binding = BINDING_HEADER) uniform HeaderBlock { uvec4 header_words[SCENE_HEADER_WORDS]; };
 // Plus 0, which no driver knows, lest branches hang on uniforms alone (ARCHITECTURE.md, "What lanes share").
 uvec4 fetch_header(uint at) { return header_words[at] + gl_WorkGroupID.y; }

@@ -8,6 +8,7 @@
 #define SHADING_COOK_TORRANCE_GLSL
 
 #include "layout/records.glsl"
+#include "shading/closure.glsl"
 #include "shading/distribution.glsl"
 #include "shading/fresnel.glsl"
 #include "shading/lobe.glsl"
@@ -16,69 +17,66 @@
 #include "shading/spectrum.glsl"
 #include "shading/warp.glsl"
 
-// The bits of `MATERIAL_ANISOTROPIC` and of both lobes' distributions: none is set for isotropic Beckmann lobes.
-const uint GENERAL_LOBES = 0xf0040u;
-
 // `DISTRIBUTION_*` of a lobe, 0 or 1.
-uint lobe_distribution(Material material, uint lobe) {
-    return (material.flags >> (DISTRIBUTION_SHIFT + 2u * lobe)) & 3u;
+uint lobe_distribution(Closure closure, uint lobe) {
+    return lobe == 0u ? closure.distribution : closure.second_distribution;
 }
 
 // D of a lobe for a unit facet normal, per steradian.
-float lobe_d(Material material, uint lobe, vec3 wm) {
-    uint kind = lobe_distribution(material, lobe);
+float lobe_d(Closure closure, uint lobe, vec3 wm) {
+    uint kind = lobe_distribution(closure, lobe);
     // Of the tables only the Gaussian's constant is asked for.
     float scale = 1.0;
     if (kind == DISTRIBUTION_GAUSSIAN) {
-        scale = load_table(material.table + lobe);
+        scale = load_table(closure.table + lobe);
     }
     if (lobe == 0u) {
-        return facet_d(kind, material.m0, material.m0_v, scale, wm);
+        return facet_d(kind, closure.alpha_u, closure.alpha_v, scale, wm);
     }
-    return facet_d(kind, material.m1, material.m1_v, scale, wm);
+    return facet_d(kind, closure.second_alpha_u, closure.second_alpha_v, scale, wm);
 }
 
 // Smith's G of a lobe.
-float lobe_g(Material material, uint lobe, vec3 wo, vec3 wi) {
-    uint kind = lobe_distribution(material, lobe);
+float lobe_g(Closure closure, uint lobe, vec3 wo, vec3 wi) {
+    uint kind = lobe_distribution(closure, lobe);
     if (lobe == 0u) {
-        return smith_g_correlated(kind, material.m0, material.m0_v, wo, wi);
+        return smith_g_correlated(kind, closure.alpha_u, closure.alpha_v, wo, wi);
     }
-    return smith_g_correlated(kind, material.m1, material.m1_v, wo, wi);
+    return smith_g_correlated(kind, closure.second_alpha_u, closure.second_alpha_v, wo, wi);
 }
 
 // D of both lobes by their weights. `h`: any multiple of the facet normal.
-float both_lobes_d(Material material, vec3 h, float w0, float w1) {
-    if ((material.flags & GENERAL_LOBES) == 0u) {
-        return beckmann_lobes_d_slope(tan2_theta(h), material.m0, material.m1, w0, w1);
+float both_lobes_d(Closure closure, vec3 h, float w0, float w1) {
+    if ((closure.flags & MATERIAL_GENERAL_LOBES) == 0u) {
+        return beckmann_lobes_d_slope(tan2_theta(h), closure.alpha_u, closure.second_alpha_u, w0, w1);
     }
     vec3 wm = normalize3(h);
     float d = 0.0;
     if (w0 > 0.0) {
-        d += w0 * lobe_d(material, 0u, wm);
+        d += w0 * lobe_d(closure, 0u, wm);
     }
     if (w1 > 0.0) {
-        d += w1 * lobe_d(material, 1u, wm);
+        d += w1 * lobe_d(closure, 1u, wm);
     }
     return d;
 }
 
 // D G of both lobes by their weights. `h`: wo + wi; `n_h`, `v_h`: its cosines.
-float both_lobes(Material material, vec3 wo, vec3 wi, vec3 h, float n_h, float v_h) {
-    if ((material.flags & MATERIAL_SMITH) == 0u) {
-        return both_lobes_d(material, h, material.w0, material.w1) * v_cavity_g(n_h, wo.z, v_h, wi.z);
+float both_lobes(Closure closure, vec3 wo, vec3 wi, vec3 h, float n_h, float v_h) {
+    if ((closure.flags & MATERIAL_SMITH) == 0u) {
+        return both_lobes_d(closure, h, closure.weight, closure.second_weight) * v_cavity_g(n_h, wo.z, v_h, wi.z);
     }
     vec3 wm = normalize3(h);
-    float first = material.w0 * (lobe_d(material, 0u, wm) * lobe_g(material, 0u, wo, wi));
-    if (material.w1 <= 0.0) {
+    float first = closure.weight * (lobe_d(closure, 0u, wm) * lobe_g(closure, 0u, wo, wi));
+    if (closure.second_weight <= 0.0) {
         return first;
     }
-    return first + material.w1 * (lobe_d(material, 1u, wm) * lobe_g(material, 1u, wo, wi));
+    return first + closure.second_weight * (lobe_d(closure, 1u, wm) * lobe_g(closure, 1u, wo, wi));
 }
 
 // Diffuse and specular reflection times cosine, per steradian. Local frame; zero unless both are on the upper side.
 // Finite everywhere; the V-cavity's G lets the grazing mirror direction grow as 1 / (N.V).
-Spectrum eval_cook_torrance(Material material, vec3 wo, vec3 wi) {
+Spectrum eval_cook_torrance(Closure closure, vec3 wo, vec3 wi) {
     if (!on_upper_side(wo, wi)) {
         return spectrum_zero();
     }
@@ -88,69 +86,69 @@ Spectrum eval_cook_torrance(Material material, vec3 wo, vec3 wi) {
     float n_h = min_(h.z * inv_h, 1.0);
     // V.H = L.H = |V + L| / 2
     float v_h = min_((0.5 * h2) * inv_h, 1.0);
-    float dg = both_lobes(material, wo, wi, h, n_h, v_h);
-    vec3 f = fresnel_material(material, v_h);
+    float dg = both_lobes(closure, wo, wi, h, n_h, v_h);
+    vec3 f = fresnel_closure(closure, v_h);
     // N.L of the cosine cancels the one below.
-    float quarter = (material.flags & MATERIAL_D_1982) != 0u ? 1.0 : 0.25;
-    float facets = (material.k_s * quarter) * div(dg, wo.z);
-    vec3 diffuse = material.color * ((material.k_d * INV_PI) * wi.z);
-    vec3 specular = (material.specular_color * f) * facets;
+    float quarter = (closure.flags & MATERIAL_D_1982) != 0u ? 1.0 : 0.25;
+    float facets = (closure.k_s * quarter) * div(dg, wo.z);
+    vec3 diffuse = closure.color * ((closure.k_d * INV_PI) * wi.z);
+    vec3 specular = (closure.specular_color * f) * facets;
     return spectrum_from_rgb(diffuse + specular);
 }
 
 // Share of lobe 0 in w0 + w1; 1 if there is none.
-float first_lobe_share(Material material) {
-    float sum = material.w0 + material.w1;
-    return sum > 1.0e-20 ? div(material.w0, sum) : 1.0;
+float first_lobe_share(Closure closure) {
+    float sum = closure.weight + closure.second_weight;
+    return sum > 1.0e-20 ? div(closure.weight, sum) : 1.0;
 }
 
 // Density of the facets that both lobes sample, per steradian of H. `h`: wo + wi; `inv_h`: one over its length.
-float pdf_lobes(Material material, vec3 wo, vec3 h, float inv_h) {
-    float share = first_lobe_share(material);
-    if ((material.flags & GENERAL_LOBES) == 0u) {
-        return both_lobes_d(material, h, share, 1.0 - share) * (h.z * inv_h);
+float pdf_lobes(Closure closure, vec3 wo, vec3 h, float inv_h) {
+    float share = first_lobe_share(closure);
+    if ((closure.flags & MATERIAL_GENERAL_LOBES) == 0u) {
+        return both_lobes_d(closure, h, share, 1.0 - share) * (h.z * inv_h);
     }
     vec3 wm = h * inv_h;
-    float first = pdf_facet(lobe_distribution(material, 0u), material.m0, material.m0_v, wo, wm);
-    float second = pdf_facet(lobe_distribution(material, 1u), material.m1, material.m1_v, wo, wm);
+    float first = pdf_facet(lobe_distribution(closure, 0u), closure.alpha_u, closure.alpha_v, wo, wm);
+    float second = pdf_facet(lobe_distribution(closure, 1u), closure.second_alpha_u, closure.second_alpha_v, wo, wm);
     return share * first + (1.0 - share) * second;
 }
 
 // Density of `sample_cook_torrance`; its integral over the upper side is below 1 by what falls under the horizon.
-float pdf_cook_torrance(Material material, vec3 wo, vec3 wi) {
+float pdf_cook_torrance(Closure closure, vec3 wo, vec3 wi) {
     if (!on_upper_side(wo, wi)) {
         return 0.0;
     }
-    float p = specular_probability(material);
+    float p = specular_probability(closure);
     vec3 h = wo + wi;
     float h2 = dot3(h, h);
     float inv_h = rsqrt(h2);
     float v_h = (0.5 * h2) * inv_h;
     // d omega_i = 4 (V.H) d omega_h
-    float facets = pdf_lobes(material, wo, h, inv_h);
+    float facets = pdf_lobes(closure, wo, h, inv_h);
     float specular = div(facets, 4.0 * v_h);
     return (1.0 - p) * (wi.z * INV_PI) + p * specular;
 }
 
 // Cosine-weighted, or `wo` mirrored about a facet of either lobe; what falls below the horizon is dropped.
 // `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, chooses diffuse, lobe 0 or lobe 1.
-DirectionSample sample_cook_torrance(Material material, vec3 wo, vec2 u, float u_lobe) {
-    float p = specular_probability(material);
-    bool first = u_lobe < p * first_lobe_share(material);
-    float m = first ? material.m0 : material.m1;
+DirectionSample sample_cook_torrance(Closure closure, vec3 wo, vec2 u, float u_lobe) {
+    float p = specular_probability(closure);
+    bool first = u_lobe < p * first_lobe_share(closure);
+    float m = first ? closure.alpha_u : closure.second_alpha_u;
     vec3 wi = square_to_cosine_hemisphere(u);
     if (u_lobe < p) {
         vec3 wm = sample_beckmann(u, m);
-        if ((material.flags & GENERAL_LOBES) != 0u) {
-            uint kind = lobe_distribution(material, first ? 0u : 1u);
-            wm = sample_facet(kind, m, first ? material.m0_v : material.m1_v, wo, u);
+        if ((closure.flags & MATERIAL_GENERAL_LOBES) != 0u) {
+            uint kind = lobe_distribution(closure, first ? 0u : 1u);
+            wm = sample_facet(kind, m, first ? closure.alpha_v : closure.second_alpha_v, wo, u);
         }
         wi = reflect_about(wo, wm);
     }
     if (!on_upper_side(wo, wi)) {
         return no_direction();
     }
-    return make_direction(wi, pdf_cook_torrance(material, wo, wi));
+    return make_direction(wi, pdf_cook_torrance(closure, wo, wi));
 }
 
 #endif

@@ -6,6 +6,7 @@
 #define SHADING_DELTA_GLSL
 
 #include "layout/records.glsl"
+#include "shading/closure.glsl"
 #include "shading/bsdf.glsl"
 #include "shading/dielectric.glsl"
 #include "shading/fresnel.glsl"
@@ -14,34 +15,34 @@
 #include "shading/spectrum.glsl"
 
 // Whole reflection of the material's colour.
-BsdfSample sample_mirror(Material material, vec3 wo) {
+BsdfSample sample_mirror(Closure closure, vec3 wo) {
     if (wo.z <= COS_MIN) {
         return no_sample();
     }
-    return make_sample(reflect_local(wo), 1.0, spectrum_from_rgb(material.color), 1.0, SAMPLE_DELTA);
+    return make_sample(reflect_local(wo), 1.0, spectrum_from_rgb(closure.color), 1.0, SAMPLE_DELTA);
 }
 
 // A smooth metal: Fresnel's reflectance times O_s.
-BsdfSample sample_conductor(Material material, vec3 wo) {
+BsdfSample sample_conductor(Closure closure, vec3 wo) {
     if (wo.z <= COS_MIN) {
         return no_sample();
     }
-    vec3 weight = material.specular_color * fresnel_material(material, wo.z);
+    vec3 weight = closure.specular_color * fresnel_closure(closure, wo.z);
     return make_sample(reflect_local(wo), 1.0, spectrum_from_rgb(weight), 1.0, SAMPLE_DELTA);
 }
 
 // A smooth dielectric: reflected with Fresnel's probability, else refracted. `color` and `specular_color` are factors on
 // the two; `u_lobe`: 0..1, chooses.
-BsdfSample sample_dielectric(Material material, vec3 wo, float u_lobe) {
+BsdfSample sample_dielectric(Closure closure, vec3 wo, float u_lobe) {
     bool inside = wo.z < 0.0;
-    float eta = inside ? rcp(material.eta.x) : material.eta.x;
+    float eta = inside ? rcp(closure.eta) : closure.eta;
     vec3 upper = vec3(wo.x, wo.y, abs(wo.z));
     if (upper.z <= COS_MIN) {
         return no_sample();
     }
     float reflectance = fresnel_dielectric(upper.z, eta);
     if (u_lobe < reflectance) {
-        Spectrum tint = spectrum_from_rgb(material.color);
+        Spectrum tint = spectrum_from_rgb(closure.color);
         return make_sample(reflect_local(wo), reflectance, tint, 1.0, SAMPLE_DELTA);
     }
     Refraction refraction = refract_local(upper, eta);
@@ -51,7 +52,7 @@ BsdfSample sample_dielectric(Material material, vec3 wo, float u_lobe) {
     vec3 below = refraction.wt;
     vec3 wi = vec3(below.x, below.y, inside ? -below.z : below.z);
     float inv_eta = rcp(eta);
-    Spectrum weight = spectrum_from_rgb(material.specular_color * (inv_eta * inv_eta));
+    Spectrum weight = spectrum_from_rgb(closure.specular_color * (inv_eta * inv_eta));
     return make_sample(wi, 1.0 - reflectance, weight, eta, SAMPLE_DELTA | SAMPLE_TRANSMIT);
 }
 
@@ -63,16 +64,16 @@ float thin_reflectance(float cos_o, float eta) {
 }
 
 // A pane without thickness: reflected, or straight on. Factors as of `sample_dielectric`.
-BsdfSample sample_thin_dielectric(Material material, vec3 wo, float u_lobe) {
+BsdfSample sample_thin_dielectric(Closure closure, vec3 wo, float u_lobe) {
     if (abs(wo.z) <= COS_MIN) {
         return no_sample();
     }
-    float reflectance = thin_reflectance(wo.z, material.eta.x);
+    float reflectance = thin_reflectance(wo.z, closure.eta);
     if (u_lobe < reflectance) {
-        Spectrum tint = spectrum_from_rgb(material.color);
+        Spectrum tint = spectrum_from_rgb(closure.color);
         return make_sample(reflect_local(wo), reflectance, tint, 1.0, SAMPLE_DELTA);
     }
-    Spectrum tint = spectrum_from_rgb(material.specular_color);
+    Spectrum tint = spectrum_from_rgb(closure.specular_color);
     return make_sample(-wo, 1.0 - reflectance, tint, 1.0, SAMPLE_DELTA | SAMPLE_TRANSMIT);
 }
 

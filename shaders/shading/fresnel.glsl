@@ -6,6 +6,7 @@
 #define SHADING_FRESNEL_GLSL
 
 #include "layout/records.glsl"
+#include "shading/closure.glsl"
 #include "shading/math.glsl"
 
 // (eta cos theta_t)^2 = eta^2 - sin^2 theta_i; zero or less is total internal reflection.
@@ -77,14 +78,14 @@ vec3 fresnel_schlick3(float cos_i, vec3 f0) {
 
 // Fresnel reflectance of a material's interface seen from outside, linear Rec. 709: conductor, Schlick or dielectric by
 // its flags. `cos_i`: cosine between the interface's or the facet's normal and the direction, 0..1.
-vec3 fresnel_material(Material material, float cos_i) {
-    if ((material.flags & MATERIAL_CONDUCTOR) != 0u) {
-        return fresnel_conductor3(cos_i, material.eta, material.k);
+vec3 fresnel_closure(Closure closure, float cos_i) {
+    if ((closure.flags & MATERIAL_CONDUCTOR) != 0u) {
+        return fresnel_conductor3(cos_i, closure.metal_eta, closure.metal_k);
     }
-    if ((material.flags & MATERIAL_SCHLICK) != 0u) {
-        return fresnel_schlick3(cos_i, material.eta);
+    if ((closure.flags & MATERIAL_SCHLICK) != 0u) {
+        return fresnel_schlick3(cos_i, closure.f0);
     }
-    return vec3(fresnel_dielectric(cos_i, material.eta.x));
+    return vec3(fresnel_dielectric(cos_i, closure.eta));
 }
 
 #endif

@@ -5,7 +5,6 @@
 #ifndef SHADING_INTERIOR_GLSL
 #define SHADING_INTERIOR_GLSL
 
-#include "layout/records.glsl"
 
 // The highest rank of a list, 0 if it is empty.
 uint interior_top(uint list) {
@@ -40,15 +39,8 @@ uint interior_remove(uint list, uint rank) {
     return rank == (list & 255u) ? list & 0xffffff00u : list;
 }
 
-// Rank of the medium behind a surface of the material, 0 if it has none.
-uint medium_rank(Material material) {
-    bool clear = material.model == MODEL_DIELECTRIC || material.model == MODEL_ROUGH_DIELECTRIC;
-    return clear ? uint(material.extra) : 0u;
-}
-
-// The list of a ray that an interface of `material` has let in (`entering`) or out.
-uint cross_interface(uint list, Material material, bool entering) {
-    uint rank = medium_rank(material);
+// The list of a ray that an interface to a medium of rank `rank` (0: no medium) has let in (`entering`) or out.
+uint cross_interface(uint list, uint rank, bool entering) {
     if (rank == 0u) {
         return list;
     }

@@ -3,6 +3,7 @@
 #define SHADING_LOBE_GLSL
 
 #include "layout/records.glsl"
+#include "shading/closure.glsl"
 #include "shading/frame.glsl"
 #include "shading/math.glsl"
 
@@ -82,9 +83,9 @@ vec3 turn_to(vec3 axis, vec3 w) {
 
 // Probability of sampling the specular lobe rather than the diffuse one, 0..1: by weight and brightest channel.
 // Zero if the material reflects nothing.
-float specular_probability(Material material) {
-    float diffuse = material.k_d * max3_(material.color);
-    float specular = material.k_s * max3_(material.specular_color);
+float specular_probability(Closure closure) {
+    float diffuse = closure.k_d * max3_(closure.color);
+    float specular = closure.k_s * max3_(closure.specular_color);
     float sum = diffuse + specular;
     return sum > 1.0e-20 ? div(specular, sum) : 0.0;
 }

@@ -3,12 +3,13 @@
 // Directions are unit, in the local frame, leaving the surface. z leaves the outside of models that transmit
 // (`MATERIAL_TRANSMISSIVE`), where wo.z < 0 is a viewer inside; of the others the caller turns it to the viewer's side, so that
 // wo.z > 0. `eval` includes the cosine. Lobes of zero width (mirror, smooth glass and metal, a plastic's coat) exist for
-// `sample_material` only: their eval and pdf are zero, and `local` and `whitted` draw them as branches.
+// `sample_closure` only: their eval and pdf are zero, and `local` and `whitted` draw them as branches.
 #ifndef SHADING_MATERIAL_GLSL
 #define SHADING_MATERIAL_GLSL
 
 #include "layout/features.glsl"
 #include "layout/records.glsl"
+#include "shading/closure.glsl"
 #include "shading/ashikhmin.glsl"
 #include "shading/blinn_phong.glsl"
 #include "shading/bsdf.glsl"
@@ -34,66 +35,66 @@
 
 // f |cos theta_i| (for the lecture's printed terms: the term over pi), per steradian, over the whole sphere.
 // Lobes of zero width add nothing.
-Spectrum eval_material(Material material, vec3 wo, vec3 wi) {
-    switch (material.model) {
-    ARM(MODEL_LAMBERT, eval_lambert(material, wo, wi))
-    ARM(MODEL_PHONG, eval_phong(material, wo, wi))
-    ARM(MODEL_BLINN_PHONG, eval_blinn_phong(material, wo, wi))
-    ARM(MODEL_COOK_TORRANCE, eval_cook_torrance(material, wo, wi))
-    ARM(MODEL_OREN_NAYAR, eval_oren_nayar(material, wo, wi))
-    ARM(MODEL_WARD, eval_ward(material, wo, wi))
-    ARM(MODEL_ASHIKHMIN_SHIRLEY, eval_ashikhmin(material, wo, wi))
-    ARM(MODEL_KELEMEN, eval_kelemen(material, wo, wi))
-    ARM(MODEL_ROUGH_CONDUCTOR, eval_rough_conductor(material, wo, wi))
-    ARM(MODEL_ROUGH_DIELECTRIC, eval_rough_dielectric(material, wo, wi))
-    ARM(MODEL_PLASTIC, eval_plastic(material, wo, wi))
-    ARM(MODEL_ROUGH_PLASTIC, eval_rough_plastic(material, wo, wi))
-    ARM(MODEL_PRINCIPLED, eval_principled(material, wo, wi))
-    ARM(MODEL_MEASURED, eval_measured(material, wo, wi))
-    ARM(MODEL_TABULATED, eval_tabulated(material, wo, wi))
+Spectrum eval_closure(Closure closure, vec3 wo, vec3 wi) {
+    switch (closure.model) {
+    ARM(MODEL_LAMBERT, eval_lambert(closure, wo, wi))
+    ARM(MODEL_PHONG, eval_phong(closure, wo, wi))
+    ARM(MODEL_BLINN_PHONG, eval_blinn_phong(closure, wo, wi))
+    ARM(MODEL_COOK_TORRANCE, eval_cook_torrance(closure, wo, wi))
+    ARM(MODEL_OREN_NAYAR, eval_oren_nayar(closure, wo, wi))
+    ARM(MODEL_WARD, eval_ward(closure, wo, wi))
+    ARM(MODEL_ASHIKHMIN_SHIRLEY, eval_ashikhmin(closure, wo, wi))
+    ARM(MODEL_KELEMEN, eval_kelemen(closure, wo, wi))
+    ARM(MODEL_ROUGH_CONDUCTOR, eval_rough_conductor(closure, wo, wi))
+    ARM(MODEL_ROUGH_DIELECTRIC, eval_rough_dielectric(closure, wo, wi))
+    ARM(MODEL_PLASTIC, eval_plastic(closure, wo, wi))
+    ARM(MODEL_ROUGH_PLASTIC, eval_rough_plastic(closure, wo, wi))
+    ARM(MODEL_PRINCIPLED, eval_principled(closure, wo, wi))
+    ARM(MODEL_MEASURED, eval_measured(closure, wo, wi))
+    ARM(MODEL_TABULATED, eval_tabulated(closure, wo, wi))
     default: break;
     }
     return spectrum_zero();
 }
 
-// Density of `sample_material` without its lobes of zero width, per solid angle; its integral is at most 1.
-float pdf_material(Material material, vec3 wo, vec3 wi) {
-    switch (material.model) {
-    ARM(MODEL_LAMBERT, pdf_lambert(material, wo, wi))
-    ARM(MODEL_PHONG, pdf_phong(material, wo, wi))
-    ARM(MODEL_BLINN_PHONG, pdf_blinn_phong(material, wo, wi))
-    ARM(MODEL_COOK_TORRANCE, pdf_cook_torrance(material, wo, wi))
-    ARM(MODEL_OREN_NAYAR, pdf_oren_nayar(material, wo, wi))
-    ARM(MODEL_WARD, pdf_ward(material, wo, wi))
-    ARM(MODEL_ASHIKHMIN_SHIRLEY, pdf_ashikhmin(material, wo, wi))
-    ARM(MODEL_KELEMEN, pdf_kelemen(material, wo, wi))
-    ARM(MODEL_ROUGH_CONDUCTOR, pdf_rough_conductor(material, wo, wi))
-    ARM(MODEL_ROUGH_DIELECTRIC, pdf_rough_dielectric(material, wo, wi))
-    ARM(MODEL_PLASTIC, pdf_plastic(material, wo, wi))
-    ARM(MODEL_ROUGH_PLASTIC, pdf_rough_plastic(material, wo, wi))
-    ARM(MODEL_PRINCIPLED, pdf_principled(material, wo, wi))
-    ARM(MODEL_MEASURED, pdf_measured(material, wo, wi))
-    ARM(MODEL_TABULATED, pdf_tabulated(material, wo, wi))
+// Density of `sample_closure` without its lobes of zero width, per solid angle; its integral is at most 1.
+float pdf_closure(Closure closure, vec3 wo, vec3 wi) {
+    switch (closure.model) {
+    ARM(MODEL_LAMBERT, pdf_lambert(closure, wo, wi))
+    ARM(MODEL_PHONG, pdf_phong(closure, wo, wi))
+    ARM(MODEL_BLINN_PHONG, pdf_blinn_phong(closure, wo, wi))
+    ARM(MODEL_COOK_TORRANCE, pdf_cook_torrance(closure, wo, wi))
+    ARM(MODEL_OREN_NAYAR, pdf_oren_nayar(closure, wo, wi))
+    ARM(MODEL_WARD, pdf_ward(closure, wo, wi))
+    ARM(MODEL_ASHIKHMIN_SHIRLEY, pdf_ashikhmin(closure, wo, wi))
+    ARM(MODEL_KELEMEN, pdf_kelemen(closure, wo, wi))
+    ARM(MODEL_ROUGH_CONDUCTOR, pdf_rough_conductor(closure, wo, wi))
+    ARM(MODEL_ROUGH_DIELECTRIC, pdf_rough_dielectric(closure, wo, wi))
+    ARM(MODEL_PLASTIC, pdf_plastic(closure, wo, wi))
+    ARM(MODEL_ROUGH_PLASTIC, pdf_rough_plastic(closure, wo, wi))
+    ARM(MODEL_PRINCIPLED, pdf_principled(closure, wo, wi))
+    ARM(MODEL_MEASURED, pdf_measured(closure, wo, wi))
+    ARM(MODEL_TABULATED, pdf_tabulated(closure, wo, wi))
     default: break;
     }
     return 0.0;
 }
 
-// The direction that models of one side choose, with density `pdf_material`; pdf 0 if it is to be dropped.
-DirectionSample sample_direction(Material material, vec3 wo, vec2 u, float u_lobe) {
-    switch (material.model) {
-    ARM(MODEL_LAMBERT, sample_lambert(material, wo, u, u_lobe))
-    ARM(MODEL_PHONG, sample_phong(material, wo, u, u_lobe))
-    ARM(MODEL_BLINN_PHONG, sample_blinn_phong(material, wo, u, u_lobe))
-    ARM(MODEL_COOK_TORRANCE, sample_cook_torrance(material, wo, u, u_lobe))
-    ARM(MODEL_OREN_NAYAR, sample_oren_nayar(material, wo, u, u_lobe))
-    ARM(MODEL_WARD, sample_ward(material, wo, u, u_lobe))
-    ARM(MODEL_ASHIKHMIN_SHIRLEY, sample_ashikhmin(material, wo, u, u_lobe))
-    ARM(MODEL_KELEMEN, sample_kelemen(material, wo, u, u_lobe))
-    ARM(MODEL_ROUGH_CONDUCTOR, sample_rough_conductor(material, wo, u, u_lobe))
-    ARM(MODEL_ROUGH_PLASTIC, sample_rough_plastic(material, wo, u, u_lobe))
-    ARM(MODEL_MEASURED, sample_measured(material, wo, u, u_lobe))
-    ARM(MODEL_TABULATED, sample_tabulated(material, wo, u, u_lobe))
+// The direction that models of one side choose, with density `pdf_closure`; pdf 0 if it is to be dropped.
+DirectionSample sample_direction(Closure closure, vec3 wo, vec2 u, float u_lobe) {
+    switch (closure.model) {
+    ARM(MODEL_LAMBERT, sample_lambert(closure, wo, u, u_lobe))
+    ARM(MODEL_PHONG, sample_phong(closure, wo, u, u_lobe))
+    ARM(MODEL_BLINN_PHONG, sample_blinn_phong(closure, wo, u, u_lobe))
+    ARM(MODEL_COOK_TORRANCE, sample_cook_torrance(closure, wo, u, u_lobe))
+    ARM(MODEL_OREN_NAYAR, sample_oren_nayar(closure, wo, u, u_lobe))
+    ARM(MODEL_WARD, sample_ward(closure, wo, u, u_lobe))
+    ARM(MODEL_ASHIKHMIN_SHIRLEY, sample_ashikhmin(closure, wo, u, u_lobe))
+    ARM(MODEL_KELEMEN, sample_kelemen(closure, wo, u, u_lobe))
+    ARM(MODEL_ROUGH_CONDUCTOR, sample_rough_conductor(closure, wo, u, u_lobe))
+    ARM(MODEL_ROUGH_PLASTIC, sample_rough_plastic(closure, wo, u, u_lobe))
+    ARM(MODEL_MEASURED, sample_measured(closure, wo, u, u_lobe))
+    ARM(MODEL_TABULATED, sample_tabulated(closure, wo, u, u_lobe))
     default: break;
     }
     return no_direction();
@@ -101,28 +102,28 @@ DirectionSample sample_direction(Material material, vec3 wo, vec2 u, float u_lob
 
 // A direction to the light, lobes of zero width included; pdf 0 if it is to be dropped.
 // `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, excluding 1, chooses among the model's lobes.
-BsdfSample sample_material(Material material, vec3 wo, vec2 u, float u_lobe) {
-    switch (material.model) {
-    ARM(MODEL_MIRROR, sample_mirror(material, wo))
-    ARM(MODEL_DIELECTRIC, sample_dielectric(material, wo, u_lobe))
-    ARM(MODEL_CONDUCTOR, sample_conductor(material, wo))
-    ARM(MODEL_ROUGH_DIELECTRIC, sample_rough_dielectric(material, wo, u, u_lobe))
-    ARM(MODEL_THIN_DIELECTRIC, sample_thin_dielectric(material, wo, u_lobe))
-    ARM(MODEL_PLASTIC, sample_plastic(material, wo, u, u_lobe))
-    ARM(MODEL_PRINCIPLED, sample_principled(material, wo, u, u_lobe))
+BsdfSample sample_closure(Closure closure, vec3 wo, vec2 u, float u_lobe) {
+    switch (closure.model) {
+    ARM(MODEL_MIRROR, sample_mirror(closure, wo))
+    ARM(MODEL_DIELECTRIC, sample_dielectric(closure, wo, u_lobe))
+    ARM(MODEL_CONDUCTOR, sample_conductor(closure, wo))
+    ARM(MODEL_ROUGH_DIELECTRIC, sample_rough_dielectric(closure, wo, u, u_lobe))
+    ARM(MODEL_THIN_DIELECTRIC, sample_thin_dielectric(closure, wo, u_lobe))
+    ARM(MODEL_PLASTIC, sample_plastic(closure, wo, u, u_lobe))
+    ARM(MODEL_PRINCIPLED, sample_principled(closure, wo, u, u_lobe))
     ARM(MODEL_NULL, sample_null(wo))
     default: break;
     }
-    DirectionSample direction = sample_direction(material, wo, u, u_lobe);
+    DirectionSample direction = sample_direction(closure, wo, u, u_lobe);
     if (direction.pdf <= 0.0) {
         return no_sample();
     }
-    return finish_sample(direction.wi, direction.pdf, eval_material(material, wo, direction.wi), 1.0, 0u);
+    return finish_sample(direction.wi, direction.pdf, eval_closure(closure, wo, direction.wi), 1.0, 0u);
 }
 
 // What the ambient radiance I_a is multiplied by: k_a O_d (row 4); zero for what only mirrors or transmits.
-Spectrum ambient_material(Material material) {
-    switch (material.model) {
+Spectrum ambient_closure(Closure closure) {
+    switch (closure.model) {
     case MODEL_MIRROR:
     case MODEL_DIELECTRIC:
     case MODEL_EMISSIVE:
@@ -131,85 +132,80 @@ Spectrum ambient_material(Material material) {
     case MODEL_THIN_DIELECTRIC:
     case MODEL_NULL:
     case MODEL_BLEND: return spectrum_zero();
-    default: return spectrum_from_rgb(material.color * material.k_a);
+    default: return spectrum_from_rgb(closure.color * closure.k_a);
     }
 }
 
 // Weight of the branch that follows the mirror direction (row 24): what a mirror, a smooth metal or a plastic's coat
 // reflects, else k_r O_s. Zero below the horizon, for glass (its branches are weighted by Fresnel), for what is not there
 // and for an emissive surface. `cos_o`: cosine between normal and `wo`.
-Spectrum mirror_weight(Material material, float cos_o) {
+Spectrum mirror_weight(Closure closure, float cos_o) {
     if (cos_o <= COS_MIN) {
         return spectrum_zero();
     }
-    switch (material.model) {
-    case MODEL_MIRROR: return spectrum_from_rgb(material.color);
+    switch (closure.model) {
+    case MODEL_MIRROR: return spectrum_from_rgb(closure.color);
     case MODEL_CONDUCTOR:
-    case MODEL_PLASTIC: return spectrum_from_rgb(material.specular_color * fresnel_material(material, cos_o));
+    case MODEL_PLASTIC: return spectrum_from_rgb(closure.specular_color * fresnel_closure(closure, cos_o));
     case MODEL_DIELECTRIC:
     case MODEL_EMISSIVE:
     case MODEL_ROUGH_DIELECTRIC:
     case MODEL_THIN_DIELECTRIC:
     case MODEL_NULL:
     case MODEL_BLEND: return spectrum_zero();
-    default: return spectrum_from_rgb(material.specular_color * material.k_r);
+    default: return spectrum_from_rgb(closure.specular_color * closure.k_r);
     }
 }
 
-// Radiance the surface sends out by itself, the same in every direction: its emission, and the colour of an emissive one.
-vec3 emission_material(Material material) {
-    vec3 shown = material.model == MODEL_EMISSIVE ? material.color : vec3(0.0);
-    return material.emission + shown;
-}
-
 // How much of the surface's own light a pane keeps: 1 - k_t if interpolated, all of it if filtered (row 22).
-float own_weight(Material material) {
-    return (material.flags & MATERIAL_FILTERED) != 0u ? 1.0 : 1.0 - material.k_t;
+float own_weight(uint flags, float k_t) {
+    return (flags & MATERIAL_FILTERED) != 0u ? 1.0 : 1.0 - k_t;
 }
 
 // What a pane multiplies the light by that passes it straight on: k_t, of a filter k_t O_t (row 22).
-Spectrum pane_tint(Material material) {
-    vec4 tint = vec4(material.k_t);
-    if ((material.flags & MATERIAL_FILTERED) != 0u) {
-        return tint * spectrum_from_rgb(material.transmit_color);
+Spectrum pane_tint(Closure closure) {
+    vec4 tint = vec4(closure.k_t);
+    if ((closure.flags & MATERIAL_FILTERED) != 0u) {
+        return tint * spectrum_from_rgb(closure.transmit_color);
     }
     return tint;
 }
 
 // Reflectance for the auxiliary image, 0..1 per channel: k_d O_d + k_s O_s, O_s times F(0) where there is an interface.
-Spectrum albedo_material(Material material) {
-    vec3 diffuse = material.color * material.k_d;
-    vec3 specular = material.specular_color * material.k_s;
+Spectrum albedo_closure(Closure closure) {
+    vec3 diffuse = closure.color * closure.k_d;
+    vec3 specular = closure.specular_color * closure.k_s;
     vec3 rgb = vec3(0.0);
-    switch (material.model) {
+    switch (closure.model) {
     case MODEL_LAMBERT:
     case MODEL_OREN_NAYAR: rgb = diffuse; break;
     case MODEL_PHONG:
     case MODEL_BLINN_PHONG:
     case MODEL_WARD:
     case MODEL_ASHIKHMIN_SHIRLEY: rgb = diffuse + specular; break;
-    case MODEL_COOK_TORRANCE: rgb = diffuse + specular * fresnel_material(material, 1.0); break;
+    case MODEL_COOK_TORRANCE: rgb = diffuse + specular * fresnel_closure(closure, 1.0); break;
     case MODEL_CONDUCTOR:
-    case MODEL_ROUGH_CONDUCTOR: rgb = material.specular_color * fresnel_material(material, 1.0); break;
+    case MODEL_ROUGH_CONDUCTOR: rgb = closure.specular_color * fresnel_closure(closure, 1.0); break;
     case MODEL_DIELECTRIC:
     case MODEL_ROUGH_DIELECTRIC:
-    case MODEL_THIN_DIELECTRIC: rgb = material.specular_color; break;
+    case MODEL_THIN_DIELECTRIC: rgb = closure.specular_color; break;
+    case MODEL_EMISSIVE: rgb = closure.emission; break;
     case MODEL_NULL:
     case MODEL_BLEND: break;
-    default: rgb = material.color; break;
+    default: rgb = closure.color; break;
     }
     return spectrum_from_rgb(vec3(clamp_(rgb.x, 0.0, 1.0), clamp_(rgb.y, 0.0, 1.0), clamp_(rgb.z, 0.0, 1.0)));
 }
 
 // True if whitted follows what the material transmits: glass, drawn smooth even if it is rough, and thin panes.
-bool is_refracting(Material material) {
-    return material.model == MODEL_DIELECTRIC || material.model == MODEL_ROUGH_DIELECTRIC ||
-        material.model == MODEL_THIN_DIELECTRIC;
+bool is_refracting(uint model) {
+    return model == MODEL_DIELECTRIC || model == MODEL_ROUGH_DIELECTRIC ||
+        model == MODEL_THIN_DIELECTRIC;
 }
 
 // True if the model has lobes of zero width only: no light needs to be sampled for it.
-bool is_delta(Material material) {
-    switch (material.model) {
+bool is_delta(Closure closure) {
+    switch (closure.model) {
     case MODEL_MIRROR:
     case MODEL_DIELECTRIC:
     case MODEL_CONDUCTOR:

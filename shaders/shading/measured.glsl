@@ -8,6 +8,7 @@
 #define SHADING_MEASURED_GLSL
 
 #include "layout/records.glsl"
+#include "shading/closure.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"
@@ -42,7 +43,7 @@ float measured_edge(uint cell) {
 }
 
 // Reflection times cosine, per steradian. Local frame; zero unless both directions are on the upper side.
-Spectrum eval_measured(Material material, vec3 wo, vec3 wi) {
+Spectrum eval_measured(Closure closure, vec3 wo, vec3 wi) {
     if (!on_upper_side(wo, wi)) {
         return spectrum_zero();
     }
@@ -62,20 +63,20 @@ Spectrum eval_measured(Material material, vec3 wo, vec3 wi) {
     turn = turn < 0.0 ? turn + 1.0 : turn;
     uint cell = measured_cell_h(wm) * MEASURED_D + measured_cell(theta_d * INV_HALF_PI, MEASURED_D);
     cell = cell * MEASURED_P + measured_cell(turn, MEASURED_P);
-    uint first = material.table + (MEASURED_H + 1u);
+    uint first = closure.table + (MEASURED_H + 1u);
     uint plane = MEASURED_H * (MEASURED_D * MEASURED_P);
     vec3 value = vec3(load_table(first + cell), load_table((first + plane) + cell), load_table((first + 2u * plane) + cell));
-    return spectrum_from_rgb((material.specular_color * value) * wi.z);
+    return spectrum_from_rgb((closure.specular_color * value) * wi.z);
 }
 
 // Density of `sample_measured`; its integral over the upper side is below 1 by what falls under the horizon.
-float pdf_measured(Material material, vec3 wo, vec3 wi) {
+float pdf_measured(Closure closure, vec3 wo, vec3 wi) {
     if (!on_upper_side(wo, wi)) {
         return 0.0;
     }
     vec3 wm = normalize3(wo + wi);
     uint cell = measured_cell_h(wm);
-    float share = load_table(material.table + cell + 1u) - load_table(material.table + cell);
+    float share = load_table(closure.table + cell + 1u) - load_table(closure.table + cell);
     float size = measured_edge(cell + 1u) - measured_edge(cell);
     float facets = div(share * wm.z, PI * max_(size, 1.0e-12));
     float specular = div(max_(facets, 0.0), 4.0 * max_(dot3(wo, wm), 1.0e-7));
@@ -84,7 +85,7 @@ float pdf_measured(Material material, vec3 wo, vec3 wi) {
 
 // Cosine-weighted, or `wo` mirrored about a half vector of a cell drawn by what the table reflects there; what falls below
 // the horizon is dropped. `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, chooses.
-DirectionSample sample_measured(Material material, vec3 wo, vec2 u, float u_lobe) {
+DirectionSample sample_measured(Closure closure, vec3 wo, vec2 u, float u_lobe) {
     vec3 wi = square_to_cosine_hemisphere(u);
     if (u_lobe >= MEASURED_COSINE) {
         uint low = 0u;
@@ -93,13 +94,13 @@ DirectionSample sample_measured(Material material, vec3 wo, vec2 u, float u_lobe
         for (uint step_ = 0u; step_ < 7u; step_++) {
             uint middle = (low + high) >> 1u;
             if (middle > low) {
-                bool below = load_table(material.table + middle) <= u.x;
+                bool below = load_table(closure.table + middle) <= u.x;
                 low = below ? middle : low;
                 high = below ? high : middle;
             }
         }
-        float begin = load_table(material.table + low);
-        float share = load_table(material.table + low + 1u) - begin;
+        float begin = load_table(closure.table + low);
+        float share = load_table(closure.table + low + 1u) - begin;
         float within = clamp_(div(u.x - begin, share), 0.0, 1.0);
         float sin2 = mix_(measured_edge(low), measured_edge(low + 1u), within);
         float sin_h = sqrt_(sin2);
@@ -109,7 +110,7 @@ DirectionSample sample_measured(Material material, vec3 wo, vec2 u, float u_lobe
     if (!on_upper_side(wo, wi)) {
         return no_direction();
     }
-    return make_direction(wi, pdf_measured(material, wo, wi));
+    return make_direction(wi, pdf_measured(closure, wo, wi));
 }
 
 #endif

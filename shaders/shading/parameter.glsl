@@ -4,6 +4,7 @@
 
 #include "layout/features.glsl"
 #include "layout/records.glsl"
+#include "shading/closure.glsl"
 #include "shading/math.glsl"
 
 #define PRINCIPLED(parameter, kept, constant) \
@@ -24,46 +25,44 @@ vec3 channel_value(vec4 texel, uint channel) {
     }
 }
 
-// `material` with one parameter multiplied by `texel` times `scale`. `parameter`: `PARAMETER_*` but for normal and bump
+// Multiplies one parameter of `closure` by `texel` times `scale`. `parameter`: `PARAMETER_*` but for normal and bump
 // maps; scalars take the first component. A mask covers all where `texel` reaches `scale`, and nothing elsewhere.
-Material apply_parameter(Material material, uint parameter, vec3 texel, float scale) {
-    Material result = material;
+void apply_parameter(inout Closure closure, uint parameter, vec3 texel, float scale) {
     vec3 value = texel * scale;
     // k_t is what is not covered.
-    float covered = 1.0 - material.k_t;
+    float covered = 1.0 - closure.k_t;
     switch (parameter) {
-    case PARAMETER_COLOR: result.color *= value; break;
-    case PARAMETER_SPECULAR_COLOR: result.specular_color *= value; break;
-    case PARAMETER_EMISSION: result.emission *= value; break;
+    case PARAMETER_COLOR: closure.color *= value; break;
+    case PARAMETER_SPECULAR_COLOR: closure.specular_color *= value; break;
+    case PARAMETER_EMISSION: closure.emission *= value; break;
     case PARAMETER_ROUGHNESS:
     case PARAMETER_ROUGHNESS_U:
     case PARAMETER_ROUGHNESS_V:
         if (parameter != PARAMETER_ROUGHNESS_V) {
-            result.m0 = max_(material.m0 * value.x, ALPHA_LEAST);
-            result.m1 = max_(material.m1 * value.x, ALPHA_LEAST);
+            closure.alpha_u = max_(closure.alpha_u * value.x, ALPHA_LEAST);
+            closure.roughness = max_(closure.roughness * value.x, ALPHA_LEAST);
+            closure.second_alpha_u = max_(closure.second_alpha_u * value.x, ALPHA_LEAST);
         }
         if (parameter != PARAMETER_ROUGHNESS_U) {
-            result.m0_v = max_(material.m0_v * value.x, ALPHA_LEAST);
-            result.m1_v = max_(material.m1_v * value.x, ALPHA_LEAST);
+            closure.alpha_v = max_(closure.alpha_v * value.x, ALPHA_LEAST);
+            closure.second_alpha_v = max_(closure.second_alpha_v * value.x, ALPHA_LEAST);
         }
         break;
-    case PARAMETER_METALLIC:
-    case PARAMETER_WEIGHT: result.extra = clamp_(material.extra * value.x, 0.0, 1.0); break;
-    case PARAMETER_OPACITY: result.k_t = 1.0 - covered * clamp_(value.x, 0.0, 1.0); break;
-    case PARAMETER_MASK: result.k_t = covered * texel.x >= scale ? 0.0 : 1.0; break;
-    // Where a principled material keeps them (`shading/principled`).
-    PRINCIPLED(PARAMETER_ANISOTROPIC, result.k.x, material.k.x)
-    PRINCIPLED(PARAMETER_SPEC_TRANS, result.k.y, material.k.y)
-    PRINCIPLED(PARAMETER_SPEC_TINT, result.k.z, material.k.z)
-    PRINCIPLED(PARAMETER_SHEEN, result.w0, material.w0)
-    PRINCIPLED(PARAMETER_SHEEN_TINT, result.w1, material.w1)
-    PRINCIPLED(PARAMETER_FLATNESS, result.k_d, material.k_d)
-    PRINCIPLED(PARAMETER_CLEARCOAT, result.k_s, material.k_s)
-    PRINCIPLED(PARAMETER_CLEARCOAT_GLOSS, result.exponent, material.exponent)
+    case PARAMETER_METALLIC: closure.metallic = clamp_(closure.metallic * value.x, 0.0, 1.0); break;
+    case PARAMETER_WEIGHT: closure.blend = clamp_(closure.blend * value.x, 0.0, 1.0); break;
+    case PARAMETER_OPACITY: closure.k_t = 1.0 - covered * clamp_(value.x, 0.0, 1.0); break;
+    case PARAMETER_MASK: closure.k_t = covered * texel.x >= scale ? 0.0 : 1.0; break;
+    PRINCIPLED(PARAMETER_ANISOTROPIC, closure.anisotropic, closure.anisotropic)
+    PRINCIPLED(PARAMETER_SPEC_TRANS, closure.spec_trans, closure.spec_trans)
+    PRINCIPLED(PARAMETER_SPEC_TINT, closure.spec_tint, closure.spec_tint)
+    PRINCIPLED(PARAMETER_SHEEN, closure.sheen, closure.sheen)
+    PRINCIPLED(PARAMETER_SHEEN_TINT, closure.sheen_tint, closure.sheen_tint)
+    PRINCIPLED(PARAMETER_FLATNESS, closure.flatness, closure.flatness)
+    PRINCIPLED(PARAMETER_CLEARCOAT, closure.clearcoat, closure.clearcoat)
+    PRINCIPLED(PARAMETER_CLEARCOAT_GLOSS, closure.clearcoat_gloss, closure.clearcoat_gloss)
     // Normal and bump maps.
     default: break;
     }
-    return result;
 }
 
 #undef PRINCIPLED

@@ -7,6 +7,7 @@
 #define SHADING_ROUGH_DIELECTRIC_GLSL
 
 #include "layout/records.glsl"
+#include "shading/closure.glsl"
 #include "shading/bsdf.glsl"
 #include "shading/distribution.glsl"
 #include "shading/fresnel.glsl"
@@ -16,8 +17,8 @@
 #include "shading/spectrum.glsl"
 
 // Index on the other side of `wo` over that on its own.
-float eta_across(Material material, vec3 wo) {
-    return wo.z >= 0.0 ? material.eta.x : rcp(material.eta.x);
+float eta_across(Closure closure, vec3 wo) {
+    return wo.z >= 0.0 ? closure.eta : rcp(closure.eta);
 }
 
 // The facet that takes `wo` to `wi`, on the outside (z > 0); the zero vector if none does. `eta`: `eta_across`.
@@ -37,29 +38,29 @@ float refraction_jacobian(float o_h, float i_h, float eta) {
 }
 
 // Reflection or transmission times cosine, per steradian.
-Spectrum eval_rough_dielectric(Material material, vec3 wo, vec3 wi) {
-    float eta = eta_across(material, wo);
+Spectrum eval_rough_dielectric(Closure closure, vec3 wo, vec3 wi) {
+    float eta = eta_across(closure, wo);
     vec3 wm = half_vector(wo, wi, eta);
     if (wm.z <= COS_MIN) {
         return spectrum_zero();
     }
-    uint kind = first_distribution(material);
+    uint kind = closure.distribution;
     float o_h = dot3(wo, wm);
     float i_h = dot3(wi, wm);
-    float d = facet_d(kind, material.m0, material.m0_v, 1.0, wm);
-    float g = smith_g_separable(kind, material.m0, material.m0_v, wo, wi);
+    float d = facet_d(kind, closure.alpha_u, closure.alpha_v, 1.0, wm);
+    float g = smith_g_separable(kind, closure.alpha_u, closure.alpha_v, wo, wi);
     float f = fresnel_dielectric(min_(abs(o_h), 1.0), eta);
     if (wo.z * wi.z > 0.0) {
-        return spectrum_from_rgb(material.color * div((f * d) * g, 4.0 * abs(wo.z)));
+        return spectrum_from_rgb(closure.color * div((f * d) * g, 4.0 * abs(wo.z)));
     }
     float root = o_h + eta * i_h;
     float through = div(((1.0 - f) * d) * (g * abs(o_h * i_h)), abs(wo.z) * max_(root * root, 1.0e-12));
-    return spectrum_from_rgb(material.specular_color * through);
+    return spectrum_from_rgb(closure.specular_color * through);
 }
 
 // Density of `sample_rough_dielectric` over the sphere.
-float pdf_rough_dielectric(Material material, vec3 wo, vec3 wi) {
-    float eta = eta_across(material, wo);
+float pdf_rough_dielectric(Closure closure, vec3 wo, vec3 wi) {
+    float eta = eta_across(closure, wo);
     vec3 wm = half_vector(wo, wi, eta);
     if (wm.z <= COS_MIN) {
         return 0.0;
@@ -68,7 +69,7 @@ float pdf_rough_dielectric(Material material, vec3 wo, vec3 wi) {
     // Seen from inside: the view through the surface's mirror, whose facets are the same.
     vec3 view = vec3(wo.x, wo.y, abs(wo.z));
     vec3 facing = wo.z < 0.0 ? vec3(-wm.x, -wm.y, wm.z) : wm;
-    float facets = pdf_facet(first_distribution(material), material.m0, material.m0_v, view, facing);
+    float facets = pdf_facet(closure.distribution, closure.alpha_u, closure.alpha_v, view, facing);
     float f = fresnel_dielectric(min_(abs(o_h), 1.0), eta);
     if (wo.z * wi.z > 0.0) {
         return div(f * facets, 4.0 * abs(o_h));
@@ -77,14 +78,14 @@ float pdf_rough_dielectric(Material material, vec3 wo, vec3 wi) {
 }
 
 // Reflected or refracted by a visible facet, by Fresnel's probability. `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, chooses.
-BsdfSample sample_rough_dielectric(Material material, vec3 wo, vec2 u, float u_lobe) {
+BsdfSample sample_rough_dielectric(Closure closure, vec3 wo, vec2 u, float u_lobe) {
     if (abs(wo.z) <= COS_MIN) {
         return no_sample();
     }
     float side = wo.z < 0.0 ? -1.0 : 1.0;
-    float eta = eta_across(material, wo);
+    float eta = eta_across(closure, wo);
     vec3 view = vec3(wo.x, wo.y, wo.z * side);
-    vec3 wm = sample_facet(first_distribution(material), material.m0, material.m0_v, view, u);
+    vec3 wm = sample_facet(closure.distribution, closure.alpha_u, closure.alpha_v, view, u);
     float o_h = dot3(view, wm);
     if (o_h <= COS_MIN) {
         return no_sample();
@@ -106,8 +107,8 @@ BsdfSample sample_rough_dielectric(Material material, vec3 wo, vec2 u, float u_l
         return no_sample();
     }
     vec3 wi = vec3(upper.x, upper.y, upper.z * side);
-    float pdf = pdf_rough_dielectric(material, wo, wi);
-    return finish_sample(wi, pdf, eval_rough_dielectric(material, wo, wi), flags == 0u ? 1.0 : eta, flags);
+    float pdf = pdf_rough_dielectric(closure, wo, wi);
+    return finish_sample(wi, pdf, eval_rough_dielectric(closure, wo, wi), flags == 0u ? 1.0 : eta, flags);
 }
 
 #endif

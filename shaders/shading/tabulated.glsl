@@ -10,6 +10,7 @@
 #define SHADING_TABULATED_GLSL
 
 #include "layout/records.glsl"
+#include "shading/closure.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/spectrum.glsl"
@@ -54,13 +55,13 @@ struct TabulatedPlace {
 uint tabulated_count(uint index) { return uint(clamp_(load_table(index), 1.0, TABULATED_MOST)); }
 
 // The head of the material's table.
-Tabulated tabulated(Material material) {
-    uint light_angles = tabulated_count(material.table);
-    uint light_azimuths = tabulated_count(material.table + 1u);
-    uint view_angles = tabulated_count(material.table + 2u);
-    uint view_azimuths = tabulated_count(material.table + 3u);
-    uint fold = tabulated_count(material.table + 4u);
-    uint lights = material.table + 5u;
+Tabulated tabulated(Closure closure) {
+    uint light_angles = tabulated_count(closure.table);
+    uint light_azimuths = tabulated_count(closure.table + 1u);
+    uint view_angles = tabulated_count(closure.table + 2u);
+    uint view_azimuths = tabulated_count(closure.table + 3u);
+    uint fold = tabulated_count(closure.table + 4u);
+    uint lights = closure.table + 5u;
     uint views = lights + light_angles;
     uint cosines = views + view_angles;
     uint slices = cosines + view_angles;
@@ -121,11 +122,11 @@ float tabulated_weight(TabulatedPlace place, uint corner) {
 }
 
 // Reflection times cosine, per steradian. Local frame; zero unless both directions are on the upper side.
-Spectrum eval_tabulated(Material material, vec3 wo, vec3 wi) {
+Spectrum eval_tabulated(Closure closure, vec3 wo, vec3 wi) {
     if (!on_upper_side(wo, wi)) {
         return spectrum_zero();
     }
-    Tabulated t = tabulated(material);
+    Tabulated t = tabulated(closure);
     float turns = tabulated_turns(wi);
     TabulatedPlace light = tabulated_place(t.lights, t.light_angles, t.light_azimuths, wi, turns * float(t.fold));
     TabulatedPlace view = tabulated_place(t.views, t.view_angles, t.view_azimuths, wo, tabulated_turns(wo) - turns);
@@ -139,15 +140,15 @@ Spectrum eval_tabulated(Material material, vec3 wo, vec3 wi) {
             sum += value * (share * tabulated_weight(view, j));
         }
     }
-    return spectrum_from_rgb((material.specular_color * sum) * wi.z);
+    return spectrum_from_rgb((closure.specular_color * sum) * wi.z);
 }
 
 // Density of `sample_tabulated`.
-float pdf_tabulated(Material material, vec3 wo, vec3 wi) {
+float pdf_tabulated(Closure closure, vec3 wo, vec3 wi) {
     if (!on_upper_side(wo, wi)) {
         return 0.0;
     }
-    Tabulated t = tabulated(material);
+    Tabulated t = tabulated(closure);
     float turns = tabulated_turns(wo);
     TabulatedPlace light = tabulated_place(t.lights, t.light_angles, t.light_azimuths, wo, turns * float(t.fold));
     TabulatedPlace cell = tabulated_place(t.views, t.view_angles, t.view_azimuths, wi, tabulated_turns(wi) - turns);
@@ -168,10 +169,10 @@ float pdf_tabulated(Material material, vec3 wo, vec3 wi) {
 
 // Cosine-weighted, or drawn from the values for light from about `wo`. `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, excluding 1,
 // chooses, also among the directions of light next to `wo`.
-DirectionSample sample_tabulated(Material material, vec3 wo, vec2 u, float u_lobe) {
+DirectionSample sample_tabulated(Closure closure, vec3 wo, vec2 u, float u_lobe) {
     vec3 wi = square_to_cosine_hemisphere(u);
     if (u_lobe >= TABULATED_COSINE && wo.z > 0.0) {
-        Tabulated t = tabulated(material);
+        Tabulated t = tabulated(closure);
         float turns = tabulated_turns(wo);
         TabulatedPlace light = tabulated_place(t.lights, t.light_angles, t.light_azimuths, wo, turns * float(t.fold));
         float choice = (u_lobe - TABULATED_COSINE) * TABULATED_REST;
@@ -196,7 +197,7 @@ DirectionSample sample_tabulated(Material material, vec3 wo, vec2 u, float u_lob
     if (!on_upper_side(wo, wi)) {
         return no_direction();
     }
-    return make_direction(wi, pdf_tabulated(material, wo, wi));
+    return make_direction(wi, pdf_tabulated(closure, wo, wi));
 }
 
 #endif

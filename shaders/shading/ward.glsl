@@ -8,6 +8,7 @@
 #define SHADING_WARD_GLSL
 
 #include "layout/records.glsl"
+#include "shading/closure.glsl"
 #include "shading/lobe.glsl"
 #include "shading/math.glsl"
 #include "shading/microfacet.glsl"
@@ -15,9 +16,9 @@
 #include "shading/warp.glsl"
 
 // The lobe's e^(...) / (pi alpha_u alpha_v), from any multiple of H with h.z > 0.
-float ward_bell(Material material, vec3 h) {
-    float a_u = max_(material.m0, M_MIN);
-    float a_v = max_(material.m0_v, M_MIN);
+float ward_bell(Closure closure, vec3 h) {
+    float a_u = max_(closure.alpha_u, M_MIN);
+    float a_v = max_(closure.alpha_v, M_MIN);
     float x = div(h.x, a_u * h.z);
     float y = div(h.y, a_v * h.z);
     float t = x * x + y * y;
@@ -25,7 +26,7 @@ float ward_bell(Material material, vec3 h) {
 }
 
 // Diffuse and specular reflection times cosine, per steradian. Local frame; zero unless both are on the upper side.
-Spectrum eval_ward(Material material, vec3 wo, vec3 wi) {
+Spectrum eval_ward(Closure closure, vec3 wo, vec3 wi) {
     if (!on_upper_side(wo, wi)) {
         return spectrum_zero();
     }
@@ -35,46 +36,46 @@ Spectrum eval_ward(Material material, vec3 wo, vec3 wi) {
     // (L.H)^2 (N.H)^4 of the unit vector is h.z^4 / (4 |h|^2)
     float z2 = h.z * h.z;
     float norm = div(h2, z2 * z2);
-    if ((material.flags & MATERIAL_WARD_1992) != 0u) {
+    if ((closure.flags & MATERIAL_WARD_1992) != 0u) {
         norm = 0.25 * rsqrt(both);
     }
-    if ((material.flags & MATERIAL_WARD_DUER) != 0u) {
+    if ((closure.flags & MATERIAL_WARD_DUER) != 0u) {
         norm = div(0.25, both);
     }
-    float lobe = (ward_bell(material, h) * norm) * wi.z;
-    vec3 diffuse = material.color * ((material.k_d * INV_PI) * wi.z);
-    return spectrum_from_rgb(diffuse + material.specular_color * (material.k_s * lobe));
+    float lobe = (ward_bell(closure, h) * norm) * wi.z;
+    vec3 diffuse = closure.color * ((closure.k_d * INV_PI) * wi.z);
+    return spectrum_from_rgb(diffuse + closure.specular_color * (closure.k_s * lobe));
 }
 
 // Density of `sample_ward`; its integral over the upper side is below 1 by what falls under the horizon.
-float pdf_ward(Material material, vec3 wo, vec3 wi) {
+float pdf_ward(Closure closure, vec3 wo, vec3 wi) {
     if (!on_upper_side(wo, wi)) {
         return 0.0;
     }
-    float p = specular_probability(material);
+    float p = specular_probability(closure);
     vec3 h = wo + wi;
     float inv_h = rsqrt(dot3(h, h));
     float n_h = h.z * inv_h;
     float v_h = dot3(wo, h) * inv_h;
     // Ward's equation 9: slopes are Gaussian, so that facets have density e^(...) / (pi alpha_u alpha_v cos^3)
-    float facets = div(ward_bell(material, h), (n_h * n_h) * n_h);
+    float facets = div(ward_bell(closure, h), (n_h * n_h) * n_h);
     return (1.0 - p) * (wi.z * INV_PI) + p * div(facets, 4.0 * max_(v_h, 1.0e-7));
 }
 
 // Cosine-weighted, or `wo` mirrored about an H of Gaussian slope; what falls below the horizon is dropped.
 // `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, chooses the lobe.
-DirectionSample sample_ward(Material material, vec3 wo, vec2 u, float u_lobe) {
+DirectionSample sample_ward(Closure closure, vec3 wo, vec2 u, float u_lobe) {
     vec3 wi = square_to_cosine_hemisphere(u);
-    if (u_lobe < specular_probability(material)) {
+    if (u_lobe < specular_probability(closure)) {
         float slope = sqrt_(max_(-log_(1.0 - u.x), 0.0));
-        float x = (max_(material.m0, M_MIN) * slope) * cos_turns(u.y);
-        float y = (max_(material.m0_v, M_MIN) * slope) * sin_turns(u.y);
+        float x = (max_(closure.alpha_u, M_MIN) * slope) * cos_turns(u.y);
+        float y = (max_(closure.alpha_v, M_MIN) * slope) * sin_turns(u.y);
         wi = reflect_about(wo, normalize3(vec3(x, y, 1.0)));
     }
     if (!on_upper_side(wo, wi)) {
         return no_direction();
     }
-    return make_direction(wi, pdf_ward(material, wo, wi));
+    return make_direction(wi, pdf_ward(closure, wo, wi));
 }
 
 #endif

@@ -15,7 +15,7 @@
 #include "trace/surface.glsl"
 #include "transport/area_light.glsl"
 #include "transport/local.glsl"
-#include "transport/textured.glsl"
+#include "transport/resolve.glsl"
 
 // The emitter that two random numbers choose, 0..1 excluding 1, by its probability: Walker's alias method (Vose 1991,
 // "A Linear Algorithm For Generating Random Numbers With a Given Distribution"). There is at least one.
@@ -33,8 +33,8 @@ Spectrum textured_radiance(Emitter emitter, SampleKey key, vec3 position, vec2 u
     Ray ray = Ray(position, lit.distance, lit.wi, 0u, 0u, 0u, 0.0, 0.0);
     Hit hit = Hit(lit.distance, b.x, b.y, emitter.instance, emitter.primitive, 0u, 0u, 0u);
     Surface surface = surface_at(ray, hit);
-    Material material = material_at(lit.wi, hit, key, DIMENSION_LIGHT_LEAF, surface);
-    return spectrum_from_rgb(emitted(surface, material, -lit.wi) * own_weight(material));
+    Closure closure = resolve_material(lit.wi, hit, key, DIMENSION_LIGHT_LEAF, surface);
+    return spectrum_from_rgb(emitted(surface, closure, -lit.wi) * own_weight(closure.flags, closure.k_t));
 }
 
 // Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1. `key`: of the
@@ -77,7 +77,7 @@ float pdf_emitter(vec3 origin, vec3 direction, float t, Surface surface, uint na
     Instance instance = load_instance(surface.instance);
     // Without textures: what bake made the choice by.
     Material material = load_material(named);
-    Spectrum shown = spectrum_from_rgb(emission_material(material) * own_weight(material));
+    Spectrum shown = spectrum_from_rgb(material.emission * own_weight(material.flags, material.k_t));
     float density = instance.light_density * spectrum_luminance(shown);
     if (HAS_EMITTER(EMITTER_SPHERE) && surface.kind == KIND_SPHERE) {
         vec3 along = transform_vector(instance.to_object, direction);

@@ -2,6 +2,7 @@
 #ifndef TRANSPORT_LOCAL_GLSL
 #define TRANSPORT_LOCAL_GLSL
 
+#include "shading/closure.glsl"
 #include "layout/features.glsl"
 #include "shading/frame.glsl"
 #include "shading/light.glsl"
@@ -47,55 +48,55 @@ vec3 facing_normal(Surface surface, vec3 wo) {
     return normal;
 }
 
-// The frame in which `material` is shaded for a viewer at `wo`: z is the normal on the viewer's side, or for models that
+// The frame in which `closure` is shaded for a viewer at `wo`: z is the normal on the viewer's side, or for models that
 // transmit the one that leaves the outside; x follows the texture coordinates where the model has a direction.
-Frame shading_frame(Surface surface, Material material, vec3 wo) {
+Frame shading_frame(Surface surface, Closure closure, vec3 wo) {
     vec3 facing = facing_normal(surface, wo);
-    bool inside = (material.flags & MATERIAL_TRANSMISSIVE) != 0u && dot3(surface.normal_geometric, wo) < 0.0;
+    bool inside = (closure.flags & MATERIAL_TRANSMISSIVE) != 0u && dot3(surface.normal_geometric, wo) < 0.0;
     vec3 normal = inside ? -facing : facing;
-    if ((material.flags & MATERIAL_ANISOTROPIC) != 0u) {
+    if ((closure.flags & MATERIAL_ANISOTROPIC) != 0u) {
         return frame_from_tangent(normal, surface_tangent(surface));
     }
     return frame_from_normal(normal);
 }
 
 // True if a viewer at `wo` sees the back of a surface that reflects on its front only.
-bool is_hidden_back(Surface surface, Material material, vec3 wo) {
-    return (material.flags & MATERIAL_ONE_SIDED) != 0u && dot3(surface.normal_geometric, wo) < 0.0;
+bool is_hidden_back(Surface surface, Closure closure, vec3 wo) {
+    return (closure.flags & MATERIAL_ONE_SIDED) != 0u && dot3(surface.normal_geometric, wo) < 0.0;
 }
 
 // Radiance the surface emits towards `wo`.
-vec3 emitted(Surface surface, Material material, vec3 wo) {
-    if ((material.flags & MATERIAL_EMIT_ONE_SIDED) != 0u && dot3(surface.normal_geometric, wo) < 0.0) {
+vec3 emitted(Surface surface, Closure closure, vec3 wo) {
+    if ((closure.flags & MATERIAL_EMIT_ONE_SIDED) != 0u && dot3(surface.normal_geometric, wo) < 0.0) {
         return vec3(0.0);
     }
-    return emission_material(material);
+    return closure.emission;
 }
 
 // What the surface adds for one light, before any shadow: throughput * eval * radiance.
-Spectrum light_contribution(Spectrum weight, Material material, Frame frame, vec3 wo, vec3 wi, Spectrum radiance) {
-    return weight * eval_material(material, to_local(frame, wo), to_local(frame, wi)) * radiance;
+Spectrum light_contribution(Spectrum weight, Closure closure, Frame frame, vec3 wo, vec3 wi, Spectrum radiance) {
+    return weight * eval_closure(closure, to_local(frame, wo), to_local(frame, wi)) * radiance;
 }
 
 // Adds emission, ambient and every light's share of the surface, as seen from `point.wo`.
 // `key`: of the path. Directions in world space. Radiance along the ray's way back.
-void shade_local(PathState path, SampleKey key, ShadingPoint point, Material material) {
+void shade_local(PathState path, SampleKey key, ShadingPoint point, Closure closure) {
     Surface surface = point.surface;
     vec3 wo = point.wo;
-    Spectrum weight = path.throughput * (own_weight(material) * point.share);
-    bool hidden = is_hidden_back(surface, material, wo);
-    Spectrum reflected = spectrum_from_rgb(header.ambient) * ambient_material(material);
+    Spectrum weight = path.throughput * (own_weight(closure.flags, closure.k_t) * point.share);
+    bool hidden = is_hidden_back(surface, closure, wo);
+    Spectrum reflected = spectrum_from_rgb(header.ambient) * ambient_closure(closure);
     if (hidden) {
         reflected = spectrum_zero();
     }
-    Spectrum own = weight * (reflected + spectrum_from_rgb(emitted(surface, material, wo)));
+    Spectrum own = weight * (reflected + spectrum_from_rgb(emitted(surface, closure, wo)));
     // A mirror or a glass covers the background like anything else.
-    float alpha = path.coverage * ((1.0 - material.k_t) * point.share);
+    float alpha = path.coverage * ((1.0 - closure.k_t) * point.share);
     uint dither = dither_hash(key, DITHER_SURFACE + point.dither);
     add_contribution(header.film_scale, path.slot, vec4(own.x, own.y, own.z, alpha), dither);
 
-    if (!is_delta(material) && !hidden && header.light_count != 0u) {
-        Frame frame = shading_frame(surface, material, wo);
+    if (!is_delta(closure) && !hidden && header.light_count != 0u) {
+        Frame frame = shading_frame(surface, closure, wo);
         bool shadowless = false;
         if (HAS_SHADOWLESS) {
             shadowless = (load_instance(surface.instance).flags & INSTANCE_NO_SHADOW) != 0u;
@@ -104,7 +105,7 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
             Light light = load_light(index);
             LightSample lit = sample_light(light, surface.position);
             if (HAS_SLIDES && light.slide != 0u) lit.radiance *= slide_factor(light, lit.wi);
-            Spectrum seen = light_contribution(weight, material, frame, wo, lit.wi, lit.radiance);
+            Spectrum seen = light_contribution(weight, closure, frame, wo, lit.wi, lit.radiance);
             if (spectrum_max(seen) > 0.0) {
                 vec4 contribution = vec4(seen.x, seen.y, seen.z, 0.0);
                 uint light_dither = dither_hash(key, (DITHER_LIGHT + point.dither) + index);
@@ -128,12 +129,12 @@ void shade_local(PathState path, SampleKey key, ShadingPoint point, Material mat
 }
 
 // Lets the ray go on through a pane.
-void shade_through(PathState path, Surface surface, Material material) {
-    if (HAS_PANES && material.k_t > 0.0) {
-        vec4 tint = pane_tint(material);
+void shade_through(PathState path, Surface surface, Closure closure) {
+    if (HAS_PANES && closure.k_t > 0.0) {
+        vec4 tint = pane_tint(closure);
         PathState through = path;
         through.throughput = path.throughput * tint;
-        through.coverage = path.coverage * material.k_t;
+        through.coverage = path.coverage * closure.k_t;
         through.path_id = hash_combine(path.path_id, LOBE_THROUGH);
         through.ray = spawn_through(surface, path.ray.direction, path.ray.t_max);
         if (spectrum_max(through.throughput) >= header.min_weight) {

@@ -3,6 +3,7 @@
 #define TRANSPORT_NESTED_GLSL
 
 #include "layout/records.glsl"
+#include "shading/closure.glsl"
 #include "shading/interior.glsl"
 #include "shading/math.glsl"
 #include "shading/sampling.glsl"
@@ -25,11 +26,11 @@ vec3 medium_absorption(uint list) {
     return vec3(load_table(at + 1u), load_table(at + 2u), load_table(at + 3u));
 }
 
-// Prepares `material` of an interface that `path` meets: its index becomes relative to what is on the outer side there.
+// Prepares `closure` of an interface that `path` meets: its index becomes relative to what is on the outer side there.
 // False if nothing is there, as a medium of higher rank is on both sides (or the same once more): the ray then goes on.
 // `t`: of the hit.
-bool meet_interface(PathState path, Surface surface, float t, inout Material material) {
-    uint rank = medium_rank(material);
+bool meet_interface(PathState path, Surface surface, float t, inout Closure closure) {
+    uint rank = closure.rank;
     if (rank == 0u) {
         return true;
     }
@@ -46,11 +47,11 @@ bool meet_interface(PathState path, Surface surface, float t, inout Material mat
         return false;
     }
     if (outer != 0u) {
-        float eta = div(material.eta.x, load_table(header.media_table + 4u * (outer - 1u)));
-        if (material.model == MODEL_ROUGH_DIELECTRIC && eta > ETA_BELOW && eta < ETA_ABOVE) {
+        float eta = div(closure.eta, load_table(header.media_table + 4u * (outer - 1u)));
+        if (closure.model == MODEL_ROUGH_DIELECTRIC && eta > ETA_BELOW && eta < ETA_ABOVE) {
             eta = eta < 1.0 ? ETA_BELOW : ETA_ABOVE;
         }
-        material.eta = vec3(eta);
+        closure.eta = eta;
     }
     return true;
 }

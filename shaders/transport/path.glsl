@@ -10,6 +10,7 @@
 #ifndef TRANSPORT_PATH_GLSL
 #define TRANSPORT_PATH_GLSL
 
+#include "shading/closure.glsl"
 #include "layout/features.glsl"
 #include "shading/bsdf.glsl"
 #include "shading/environment.glsl"
@@ -65,7 +66,7 @@ void shade_beyond(PathState path, SampleKey key, Surface surface) {
 }
 
 // Light of one emitter, chosen at random, that the surface sends on towards `wo`; its shadow ray is appended.
-void shade_emitter(PathState path, SampleKey key, Surface surface, Material material, Frame frame, vec3 wo) {
+void shade_emitter(PathState path, SampleKey key, Surface surface, Closure closure, Frame frame, vec3 wo) {
     uint chosen = 0u;
     if (header.emitter_count > 1u) {
         chosen = choose_emitter(sample_2d(key, DIMENSION_LIGHT_CHOICE));
@@ -81,13 +82,13 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
     if (spectrum_max(lit.radiance) <= 0.0 || !consistent(surface, wo, lit.wi, wo_local, wi_local)) {
         return;
     }
-    Spectrum reflected = path.throughput * eval_material(material, wo_local, wi_local) * lit.radiance;
+    Spectrum reflected = path.throughput * eval_closure(closure, wo_local, wi_local) * lit.radiance;
     if (spectrum_max(reflected) <= 0.0) {
         return;
     }
     float weight = 1.0;
     if (lit.pdf_solid_angle > 0.0) {
-        weight = power_heuristic(lit.pdf_solid_angle, pdf_material(material, wo_local, wi_local));
+        weight = power_heuristic(lit.pdf_solid_angle, pdf_closure(closure, wo_local, wi_local));
     }
     vec4 contribution = vec4(reflected.x, reflected.y, reflected.z, 0.0);
     Ray ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
@@ -100,14 +101,14 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Material mate
 }
 
 // Lets the path go on into a direction of the surface.
-void scatter(PathState path, SampleKey key, Surface surface, Material material, Frame frame, vec3 wo) {
+void scatter(PathState path, SampleKey key, Surface surface, Closure closure, Frame frame, vec3 wo) {
     // The last ray can only meet what glows.
     if (!HAS_GLOW && path.depth + 1u >= header.max_depth) {
         return;
     }
     vec3 wo_local = to_local(frame, wo);
     float u_lobe = sample_1d(key, DIMENSION_LOBE);
-    BsdfSample bsdf = sample_material(material, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
+    BsdfSample bsdf = sample_closure(closure, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
     vec3 wi = to_world(frame, bsdf.wi);
     if (bsdf.pdf <= 0.0 || !consistent(surface, wo, wi, wo_local, bsdf.wi)) {
         return;
@@ -120,11 +121,11 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
     next.passed = 0.0;
     next.flags = 0u;
     next.pdf = (bsdf.flags & SAMPLE_DELTA) != 0u ? 0.0 : bsdf.pdf;
-    if ((bsdf.flags & SAMPLE_TRANSMIT) != 0u && material.model != MODEL_THIN_DIELECTRIC) {
+    if ((bsdf.flags & SAMPLE_TRANSMIT) != 0u && closure.model != MODEL_THIN_DIELECTRIC) {
         next.eta = path.eta * bsdf.eta;
-        next.absorption = bsdf.wi.z < 0.0 ? material.absorption : vec3(0.0);
+        next.absorption = bsdf.wi.z < 0.0 ? closure.absorption : vec3(0.0);
         if (HAS_RANKS) {
-            next.interior = cross_interface(path.interior, material, bsdf.wi.z < 0.0);
+            next.interior = cross_interface(path.interior, closure.rank, bsdf.wi.z < 0.0);
             next.absorption = medium_absorption(next.interior);
         }
     }
@@ -143,26 +144,26 @@ void scatter(PathState path, SampleKey key, Surface surface, Material material, 
 }
 
 // Shades one hit: adds what glows, samples an emitter, and lets the path go on.
-// `key`: of the path. `named`: the surface's material, of which `material` is what is met here.
-void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uint named, Material material) {
+// `key`: of the path. `named`: the surface's material, of which `closure` is what is met here.
+void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uint named, Closure closure) {
     PathState path = incoming;
     vec3 direction = path.ray.direction;
     const bool filtered = SHADOWS == SHADOWS_FILTERED;
-    if (HIDES_EMITTERS && path.depth == 0u && emission_material(material) != vec3(0.0)) {
+    if (HIDES_EMITTERS && path.depth == 0u && closure.emission != vec3(0.0)) {
         path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
         path.ray = spawn_through(surface, direction, path.ray.t_max);
         push_path(path);
         return;
     }
-    if (HAS_PANES && material.k_t > 0.0) {
-        float own = own_weight(material);
-        vec4 tint = pane_tint(material);
+    if (HAS_PANES && closure.k_t > 0.0) {
+        float own = own_weight(closure.flags, closure.k_t);
+        vec4 tint = pane_tint(closure);
         // Each side as often as it is bright.
         float share = spectrum_max(tint);
         float through = div(share, own + share);
         if (sample_1d(key, DIMENSION_PANE) < through) {
             path.throughput *= tint * rcp(through);
-            path.coverage *= material.k_t * rcp(through);
+            path.coverage *= closure.k_t * rcp(through);
             path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
             pass_surface(surface, hit.t, filtered, path);
             path.ray = spawn_through(surface, direction, path.ray.t_max);
@@ -170,11 +171,11 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uin
             return;
         }
         path.throughput *= own * rcp(1.0 - through);
-        path.coverage *= (1.0 - material.k_t) * rcp(1.0 - through);
+        path.coverage *= (1.0 - closure.k_t) * rcp(1.0 - through);
     }
 
     vec3 wo = -direction;
-    Spectrum own_light = spectrum_from_rgb(emitted(surface, material, wo));
+    Spectrum own_light = spectrum_from_rgb(emitted(surface, closure, wo));
     bool glows = spectrum_max(own_light) > 0.0;
     if (glows || path.coverage != 0.0) {
         float weight = 1.0;
@@ -186,14 +187,14 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uin
         Spectrum seen = path.throughput * (own_light * weight);
         add_limited(path.slot, path.depth, seen, path.coverage, dither_hash(key, DITHER_SURFACE));
     }
-    if (path.depth >= header.max_depth || is_hidden_back(surface, material, wo)) {
+    if (path.depth >= header.max_depth || is_hidden_back(surface, closure, wo)) {
         return;
     }
-    Frame frame = shading_frame(surface, material, wo);
-    if (header.emitter_count > 0u && !is_delta(material)) {
-        shade_emitter(path, key, surface, material, frame, wo);
+    Frame frame = shading_frame(surface, closure, wo);
+    if (header.emitter_count > 0u && !is_delta(closure)) {
+        shade_emitter(path, key, surface, closure, frame, wo);
     }
-    scatter(path, key, surface, material, frame, wo);
+    scatter(path, key, surface, closure, frame, wo);
 }
 
 #endif

@@ -2,6 +2,7 @@
 #ifndef TRANSPORT_SHADE_GLSL
 #define TRANSPORT_SHADE_GLSL
 
+#include "shading/closure.glsl"
 #include "layout/features.glsl"
 #include "shading/dielectric.glsl"
 #include "shading/environment.glsl"
@@ -14,7 +15,7 @@
 #include "transport/local.glsl"
 #include "transport/nested.glsl"
 #include "transport/path.glsl"
-#include "transport/textured.glsl"
+#include "transport/resolve.glsl"
 #include "transport/whitted.glsl"
 
 // Throughput below this is nothing, on every device alike (strict rule 4).
@@ -50,41 +51,39 @@ void shade(PathState incoming, Hit hit) {
     }
     Surface surface = surface_at(path.ray, hit);
     uint named = surface.material;
-    Material material = material_at(path.ray.direction, hit, key, DIMENSION_LEAF, surface);
-    NAME_MODEL(material)
+    Closure closure = resolve_material(path.ray.direction, hit, key, DIMENSION_LEAF, surface);
     if (HAS_SHADOWLESS && HAS_EMITTER(EMITTER_ENVIRONMENT)) {
         shade_beyond(path, key, surface);
     }
     if (HAS_RANKS) {
-        if (!meet_interface(path, surface, hit.t, material)) {
+        if (!meet_interface(path, surface, hit.t, closure)) {
             return;
         }
     }
     if (HAS_AOVS && path.path_id == 0u) {
-        Spectrum albedo = albedo_material(material);
+        Spectrum albedo = albedo_closure(closure);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
         add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
     if (INTEGRATOR == INTEGRATOR_PATH) {
-        shade_path(path, key, hit, surface, named, material);
+        shade_path(path, key, hit, surface, named, closure);
         return;
     }
     uint flags = HAS_FACETS && INTEGRATOR == INTEGRATOR_LOCAL ? load_instance(hit.instance).flags : 0u;
     for (uint index = 0u; index < 3u; index++) {
         ShadingPoint point = shading_point(path.ray, hit, surface, flags, index);
-        Material material_there = material;
+        Closure closure_there = closure;
         if (faceted(flags)) {
-            material_there = material_at(-point.wo, point.hit, key, DIMENSION_LEAF, point.surface);
-            NAME_MODEL(material_there)
+            closure_there = resolve_material(-point.wo, point.hit, key, DIMENSION_LEAF, point.surface);
         }
-        shade_local(path, key, point, material_there);
+        shade_local(path, key, point, closure_there);
         if (!HAS_FACETS || index + 1u >= shading_points(flags)) {
             break;
         }
     }
-    shade_through(path, surface, material);
+    shade_through(path, surface, closure);
     if (INTEGRATOR == INTEGRATOR_WHITTED && path.depth < header.max_depth) {
-        shade_whitted(path, surface, material);
+        shade_whitted(path, surface, closure);
     }
 }
 

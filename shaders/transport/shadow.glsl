@@ -12,7 +12,7 @@
 #include "transport/generate.glsl"
 #include "transport/limit.glsl"
 #include "transport/local.glsl"
-#include "transport/textured.glsl"
+#include "transport/resolve.glsl"
 
 // A shadow ray that is longer leads out of the scene.
 const float FAR = 1.0e29;
@@ -36,9 +36,9 @@ void filter_shadow(ShadowRay shadow, Hit hit) {
     // Every layer has a sequence of its own: indices of one sequence are strata of each other.
     SampleKey key = sample_key(shadow.dither, 0u, shadow.layer);
     Surface surface = surface_at(shadow.ray, hit);
-    Material material = material_at(shadow.ray.direction, hit, key, DIMENSION_LEAF, surface);
+    Closure closure = resolve_material(shadow.ray.direction, hit, key, DIMENSION_LEAF, surface);
     ShadowRay beyond = shadow;
-    beyond.contribution = spectrum_flush(shadow.contribution * pane_tint(material));
+    beyond.contribution = spectrum_flush(shadow.contribution * pane_tint(closure));
     if (spectrum_max(beyond.contribution) <= 0.0) {
         return;
     }

@@ -2,6 +2,7 @@
 #ifndef TRANSPORT_WHITTED_GLSL
 #define TRANSPORT_WHITTED_GLSL
 
+#include "shading/closure.glsl"
 #include "layout/features.glsl"
 #include "shading/delta.glsl"
 #include "shading/dielectric.glsl"
@@ -46,31 +47,31 @@ vec3 mirror_direction(Surface surface, vec3 wo) {
 
 // Follows the mirror branch of any material and both branches of a dielectric, each with its Fresnel weight.
 // Without ranks media do not nest: a ray that leaves a dielectric is outside. Radiance is not scaled by eta^2 (Whitted's model).
-void shade_whitted(PathState path, Surface surface, Material material) {
+void shade_whitted(PathState path, Surface surface, Closure closure) {
     vec3 wo = -path.ray.direction;
-    bool refracting = is_refracting(material);
-    if (!refracting && is_hidden_back(surface, material, wo)) {
+    bool refracting = is_refracting(closure.model);
+    if (!refracting && is_hidden_back(surface, closure, wo)) {
         return;
     }
     vec3 normal = facing_normal(surface, wo);
     bool entering = dot3(surface.normal_geometric, wo) >= 0.0;
-    float eta = entering ? material.eta.x : rcp(material.eta.x);
+    float eta = entering ? closure.eta : rcp(closure.eta);
     Frame frame = frame_from_normal(normal);
     vec3 wo_local = to_local(frame, wo);
-    bool thin = material.model == MODEL_THIN_DIELECTRIC;
+    bool thin = closure.model == MODEL_THIN_DIELECTRIC;
     float reflectance = 0.0;
     Spectrum reflected;
     if (refracting) {
-        reflectance = thin ? thin_reflectance(wo_local.z, material.eta.x) : fresnel_dielectric(wo_local.z, eta);
+        reflectance = thin ? thin_reflectance(wo_local.z, closure.eta) : fresnel_dielectric(wo_local.z, eta);
         reflected = vec4(reflectance);
     } else {
-        reflected = mirror_weight(material, dot3(normal, wo)) * own_weight(material);
+        reflected = mirror_weight(closure, dot3(normal, wo)) * own_weight(closure.flags, closure.k_t);
     }
     push_branch(path, surface, mirror_direction(surface, wo), reflected, LOBE_MIRROR);
     if (!refracting) {
         return;
     }
-    Spectrum refracted = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
+    Spectrum refracted = spectrum_from_rgb(closure.specular_color) * (1.0 - reflectance);
     PathState inside = path;
     vec3 wi = path.ray.direction;
     if (!thin) {
@@ -79,10 +80,10 @@ void shade_whitted(PathState path, Surface surface, Material material) {
             return;
         }
         wi = to_world(frame, refraction.wt);
-        inside.eta = entering ? material.eta.x : 1.0;
-        inside.absorption = entering ? material.absorption : vec3(0.0);
+        inside.eta = entering ? closure.eta : 1.0;
+        inside.absorption = entering ? closure.absorption : vec3(0.0);
         if (HAS_RANKS) {
-            inside.interior = cross_interface(path.interior, material, entering);
+            inside.interior = cross_interface(path.interior, closure.rank, entering);
             inside.absorption = medium_absorption(inside.interior);
         }
     }

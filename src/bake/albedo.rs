@@ -4,12 +4,12 @@
 //! machine bakes the same bits.
 
 use crate::layout::{
-    ALBEDO_HEADER, ALBEDO_KNOTS, DISTRIBUTION_GAUSSIAN, DISTRIBUTION_SHIFT, Features, MATERIAL_SCHLICK, Material,
-    SceneHeader, SceneView,
+    ALBEDO_HEADER, ALBEDO_KNOTS, DISTRIBUTION_GAUSSIAN, Features, MATERIAL_SCHLICK, SceneHeader, SceneView,
 };
+use crate::shading::closure::Closure;
 use crate::shading::dielectric::refract_local;
 use crate::shading::distribution::{sample_facet, smith_g1};
-use crate::shading::fresnel::{fresnel_dielectric, fresnel_material};
+use crate::shading::fresnel::{fresnel_closure, fresnel_dielectric};
 use crate::shading::kelemen::eval_kelemen;
 use crate::shading::lobe::{COS_MIN, reflect_about};
 use crate::shading::math::{dot3, normalize3};
@@ -96,43 +96,37 @@ pub fn diffuse_reflectance(eta: f32) -> f32 {
 }
 
 /// The header that all these tables begin with; the Gaussian's constants are in it.
-fn header(material: &Material) -> Vec<f32> {
+fn header(closure: &Closure) -> Vec<f32> {
     let mut header = vec![0.0; ALBEDO_HEADER as usize];
-    for (lobe, alpha) in [material.m0, material.m1].into_iter().enumerate() {
-        let kind = (material.flags >> (DISTRIBUTION_SHIFT + 2 * lobe as u32)) & 3;
+    let lobes = [(closure.distribution, closure.alpha_u), (closure.second_distribution, closure.second_alpha_u)];
+    for (lobe, (kind, alpha)) in lobes.into_iter().enumerate() {
         header[lobe] = if kind == DISTRIBUTION_GAUSSIAN { gaussian_scale(alpha) as f32 } else { 1.0 };
     }
     header
 }
 
 /// Appends the table of the constants only.
-pub fn constant_table(material: &mut Material, tables: &mut Vec<f32>) {
-    material.table = tables.len() as u32;
-    tables.extend(header(material));
+pub fn constant_table(closure: &mut Closure, tables: &mut Vec<f32>) {
+    closure.table = tables.len() as u32;
+    tables.extend(header(closure));
 }
 
-fn finish(material: &mut Material, header: &[f32], table: &[f64], tables: &mut Vec<f32>) {
-    material.table = tables.len() as u32;
+fn finish(closure: &mut Closure, header: &[f32], table: &[f64], tables: &mut Vec<f32>) {
+    closure.table = tables.len() as u32;
     tables.extend(header);
     tables.extend(table.iter().map(|&e| e as f32));
 }
 
 /// Appends the albedo of a rough conductor's facets that absorb nothing (`MATERIAL_COMPENSATE`).
-pub fn conductor_table(material: &mut Material, tables: &mut Vec<f32>) {
-    let mut header = header(material);
-    let white = Material {
-        flags: (material.flags & (3 << DISTRIBUTION_SHIFT)) | MATERIAL_SCHLICK,
-        eta: Vec3::ONE,
-        specular_color: Vec3::ONE,
-        table: 0,
-        ..*material
-    };
+pub fn conductor_table(closure: &mut Closure, tables: &mut Vec<f32>) {
+    let mut header = header(closure);
+    let white = Closure { flags: MATERIAL_SCHLICK, f0: Vec3::ONE, specular_color: Vec3::ONE, table: 0, ..*closure };
     let (scene_header, features) = (SceneHeader::default(), Features::default());
     let constants = header.clone();
-    let kind = (material.flags >> DISTRIBUTION_SHIFT) & 3;
-    let table = tabulate(material.m0 != material.m0_v, |wo, u| {
+    let kind = closure.distribution;
+    let table = tabulate(closure.alpha_u != closure.alpha_v, |wo, u| {
         let scene = SceneView::of_tables(&scene_header, &features, &constants);
-        let wi = reflect_about(wo, sample_facet(kind, white.m0, white.m0_v, wo, u));
+        let wi = reflect_about(wo, sample_facet(kind, white.alpha_u, white.alpha_v, wo, u));
         let pdf = pdf_rough_conductor(&scene, &white, wo, wi);
         if pdf <= 0.0 {
             return 0.0;
@@ -141,35 +135,35 @@ pub fn conductor_table(material: &mut Material, tables: &mut Vec<f32>) {
     });
     header[2] = mean(&table) as f32;
     for channel in 0..3 {
-        header[3 + channel] = cosine_mean(|mu| f64::from(fresnel_material(material, mu as f32)[channel])) as f32;
+        header[3 + channel] = cosine_mean(|mu| f64::from(fresnel_closure(closure, mu as f32)[channel])) as f32;
     }
-    finish(material, &header, &table, tables);
+    finish(closure, &header, &table, tables);
 }
 
 /// Appends the albedo of the specular part of Kelemen's model.
-pub fn kelemen_table(material: &mut Material, tables: &mut Vec<f32>) {
-    let mut header = header(material);
+pub fn kelemen_table(closure: &mut Closure, tables: &mut Vec<f32>) {
+    let mut header = header(closure);
     let zeros = [0.0; (ALBEDO_HEADER + ALBEDO_KNOTS) as usize];
     let (scene_header, features) = (SceneHeader::default(), Features::default());
-    let specular = Material { color: Vec3::ZERO, specular_color: Vec3::ONE, table: 0, ..*material };
+    let specular = Closure { color: Vec3::ZERO, specular_color: Vec3::ONE, table: 0, ..*closure };
     let table = tabulate(false, |wo, u| {
-        let wm = sample_beckmann(u, specular.m0);
+        let wm = sample_beckmann(u, specular.alpha_u);
         let (wi, cos) = (reflect_about(wo, wm), dot3(wo, wm));
-        let pdf = f64::from(pdf_beckmann(wm, specular.m0)) / (4.0 * f64::from(cos));
+        let pdf = f64::from(pdf_beckmann(wm, specular.alpha_u)) / (4.0 * f64::from(cos));
         if cos <= COS_MIN || pdf <= 0.0 {
             return 0.0;
         }
         f64::from(eval_kelemen(&SceneView::of_tables(&scene_header, &features, &zeros), &specular, wo, wi).x) / pdf
     });
     header[2] = mean(&table) as f32;
-    finish(material, &header, &table, tables);
+    finish(closure, &header, &table, tables);
 }
 
 /// Appends the transmittance of a rough plastic's coat, and its reflectance from inside, as Mitsuba 3 defines them: by
 /// facets seen from outside, each with the masking of the direction it sends light to.
-pub fn plastic_table(material: &mut Material, tables: &mut Vec<f32>) {
-    let mut header = header(material);
-    let (kind, alpha, eta) = ((material.flags >> DISTRIBUTION_SHIFT) & 3, material.m0, material.eta.x);
+pub fn plastic_table(closure: &mut Closure, tables: &mut Vec<f32>) {
+    let mut header = header(closure);
+    let (kind, alpha, eta) = (closure.distribution, closure.alpha_u, closure.eta);
     let facet = |wo: Vec3, u: Vec2| {
         let wm = sample_facet(kind, alpha, alpha, wo, u);
         (wm, dot3(wo, wm).clamp(0.0, 1.0))
@@ -196,5 +190,5 @@ pub fn plastic_table(material: &mut Material, tables: &mut Vec<f32>) {
     });
     header[2] = mean(&transmittance) as f32;
     header[6] = mean(&inner) as f32;
-    finish(material, &header, &transmittance, tables);
+    finish(closure, &header, &transmittance, tables);
 }

@@ -54,6 +54,8 @@ pub struct SceneArrays {
     pub shapes: Arc<Shapes>,
     pub instances: Vec<Instance>,
     pub materials: Vec<Material>,
+    /// Blocks of the materials' models.
+    pub parameters: Vec<[u32; 4]>,
     pub lights: Vec<Light>,
     /// What `path` samples; empty for the other integrators.
     pub emitters: Vec<Emitter>,
@@ -133,7 +135,7 @@ impl SceneArrays {
     /// Whether more than one ray may go on from where one ends: in Whitted's model, behind glass and panes.
     pub fn branches(&self) -> bool {
         let whitted = self.features.integrator == INTEGRATOR_WHITTED;
-        whitted && (self.has_panes() || self.materials.iter().any(is_refracting))
+        whitted && (self.has_panes() || self.materials.iter().any(|material| is_refracting(material.model)))
     }
 
     /// The arrays as the twins take them.
@@ -148,6 +150,7 @@ impl SceneArrays {
             faces: &self.shapes.faces,
             vertices: &self.shapes.vertices,
             materials: &self.materials,
+            parameters: &self.parameters,
             lights: &self.lights,
             emitters: &self.emitters,
             environments: &self.environments,

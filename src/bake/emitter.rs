@@ -8,10 +8,10 @@ use super::{BakeError, SceneArrays};
 use crate::layout::{
     EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_ONE_SIDED, EMITTER_SPHERE, EMITTER_TEXTURED, EMITTER_TRIANGLE, Emitter,
     INVALID, Instance, KIND_SPHERE, LIGHT_DIRECTIONAL, LIGHT_SPOT, Light, MATERIAL_EMIT_ONE_SIDED, MODEL_BLEND,
-    MODEL_EMISSIVE, Material, PARAMETER_COLOR, PARAMETER_EMISSION, PARAMETER_MASK, PARAMETER_OPACITY,
+    MODEL_EMISSIVE, Material, PARAMETER_EMISSION, PARAMETER_MASK, PARAMETER_OPACITY,
 };
 use crate::scene::{Background, Scene};
-use crate::shading::material::{emission_material, own_weight};
+use crate::shading::material::own_weight;
 use glam::{DMat3, DVec3, Vec3, Vec4};
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -117,7 +117,7 @@ fn distribute(mut all: Collection, data: &mut SceneArrays) {
 
 /// What a material sends out, without its textures, as far as it covers; a blend on average.
 fn emission(material: &Material) -> Vec3 {
-    emission_material(material) * own_weight(material)
+    material.emission * own_weight(material.flags, material.k_t)
 }
 
 /// The primitives of an instance's mesh that can be hit, in ascending order.
@@ -143,7 +143,6 @@ fn collect_instance(data: &SceneArrays, index: usize, all: &mut Collection) {
             || data.textures[first..first + count].iter().any(|texture| match texture.parameter {
                 // Holes emit nothing.
                 PARAMETER_EMISSION | PARAMETER_OPACITY | PARAMETER_MASK => true,
-                PARAMETER_COLOR => material.model == MODEL_EMISSIVE,
                 _ => false,
             })
     };

@@ -1,14 +1,15 @@
 //! Measured tables in the layout of `shading/measured`.
 
-use crate::layout::{MODEL_MEASURED, Material};
+use crate::layout::MODEL_MEASURED;
+use crate::shading::closure::Closure;
 use crate::shading::measured::{MEASURED_D, MEASURED_H, MEASURED_P, measured_edge};
 
 /// Appends a table: first the steps of the integral over theta_h that samples are drawn from, then its three planes.
-pub fn measured_table(values: &[f32], material: &mut Material, tables: &mut Vec<f32>) {
-    material.model = MODEL_MEASURED;
+pub fn measured_table(values: &[f32], closure: &mut Closure, tables: &mut Vec<f32>) {
+    closure.model = MODEL_MEASURED;
     let plane = (MEASURED_H * MEASURED_D * MEASURED_P) as usize;
     debug_assert_eq!(values.len(), 3 * plane);
-    material.table = tables.len() as u32;
+    closure.table = tables.len() as u32;
     tables.extend(steps(values, plane));
     // Below the horizon MERL's tables hold -1.
     tables.extend(values.iter().map(|value| value.max(0.0)));

@@ -1,14 +1,16 @@
-//! Materials as the device reads them: one record each, and tables for the models that have them.
+//! Materials as the twins evaluate them: one closure each, which is packed into a record and a block, and tables for the
+//! models that have them.
 
-use super::BakeError;
 use super::albedo::{conductor_table, constant_table, diffuse_reflectance, kelemen_table, plastic_table};
 use super::measured::measured_table;
 use super::tabulated::tabulated_table;
+use super::{BakeError, SceneArrays};
 use crate::layout::*;
 use crate::scene::{
     self, Distribution, Fresnel, Lobe, Masking, Model, Principled, Table, Transparency, WardNormalisation,
 };
-use crate::shading::material::{emission_material, own_weight};
+use crate::shading::closure::{BLOCK_WORDS_MOST, Closure, pack_block};
+use crate::shading::material::own_weight;
 use glam::Vec3;
 
 /// An index closer to 1 than this would leave rough glass without facets that refract.
@@ -18,6 +20,15 @@ const BLEND_LEAVES: usize = MAX_LEAVES as usize;
 /// Blends within blends, at most.
 const BLEND_DEPTH: usize = 8;
 
+/// A material of the scene, or a part of a blend, before it is packed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Baked {
+    pub closure: Closure,
+    /// Its records in the texture array, and how many.
+    pub first_texture: u32,
+    pub texture_count: u32,
+}
+
 /// One material; its table is appended to `tables`. A blend's materials are found by `bake_blends` later.
 /// `traced`: for path tracing, which wants reciprocal models.
 pub fn bake_material(
@@ -25,18 +36,18 @@ pub fn bake_material(
     measured: &[Table],
     traced: bool,
     tables: &mut Vec<f32>,
-) -> Result<Material, BakeError> {
-    let mut baked = Material {
+) -> Result<Closure, BakeError> {
+    let mut baked = Closure {
         color: material.color,
         specular_color: material.specular_color,
         k_a: material.k_a,
         k_d: material.k_d,
         k_s: material.k_s,
         k_r: material.k_r,
-        eta: Vec3::ONE,
+        eta: 1.0,
         emission: material.emission,
         table: INVALID,
-        ..Material::default()
+        ..Closure::default()
     };
     if !material.emission_two_sided {
         baked.flags |= MATERIAL_EMIT_ONE_SIDED;
@@ -64,14 +75,14 @@ fn bake_model(
     material: &scene::Material,
     measured: &[Table],
     traced: bool,
-    baked: &mut Material,
+    baked: &mut Closure,
     tables: &mut Vec<f32>,
 ) -> Result<(), BakeError> {
     match &material.model {
         Model::Lambert => baked.model = MODEL_LAMBERT,
         Model::OrenNayar { sigma } => {
             baked.model = MODEL_OREN_NAYAR;
-            baked.extra = *sigma;
+            baked.sigma = *sigma;
         }
         Model::Phong { exponent, lafortune } => {
             baked.model = MODEL_PHONG;
@@ -106,7 +117,7 @@ fn bake_model(
         Model::Kelemen { alpha, eta } => {
             baked.model = MODEL_KELEMEN;
             bake_roughness(*alpha, *alpha, baked);
-            baked.eta = Vec3::splat(*eta);
+            baked.eta = *eta;
             kelemen_table(baked, tables);
         }
         Model::Conductor { fresnel } => {
@@ -127,7 +138,7 @@ fn bake_model(
         Model::Mirror => baked.model = MODEL_MIRROR,
         Model::Dielectric { eta, absorption } => {
             baked.model = MODEL_DIELECTRIC;
-            baked.eta = Vec3::splat(*eta);
+            baked.eta = *eta;
             baked.absorption = *absorption;
             baked.flags |= MATERIAL_TRANSMISSIVE;
         }
@@ -135,26 +146,25 @@ fn bake_model(
             baked.model = MODEL_ROUGH_DIELECTRIC;
             bake_facets(*distribution, *alpha_u, *alpha_v, baked);
             let distant = if *eta < 1.0 { eta.min(1.0 - ETA_LEAST) } else { eta.max(1.0 + ETA_LEAST) };
-            baked.eta = Vec3::splat(distant);
+            baked.eta = distant;
             baked.absorption = *absorption;
             baked.flags |= MATERIAL_TRANSMISSIVE;
-            constant_table(baked, tables);
         }
         Model::ThinDielectric { eta } => {
             baked.model = MODEL_THIN_DIELECTRIC;
-            baked.eta = Vec3::splat(*eta);
+            baked.eta = *eta;
             baked.flags |= MATERIAL_TRANSMISSIVE;
         }
         Model::Plastic { eta, nonlinear } => {
             baked.model = MODEL_PLASTIC;
-            baked.eta = Vec3::splat(*eta);
-            baked.extra = diffuse_reflectance(1.0 / eta);
+            baked.eta = *eta;
+            baked.inner_reflectance = diffuse_reflectance(1.0 / eta);
             baked.flags |= if *nonlinear { MATERIAL_NONLINEAR } else { 0 };
         }
         Model::RoughPlastic { distribution, alpha, eta, nonlinear } => {
             baked.model = MODEL_ROUGH_PLASTIC;
             bake_facets(*distribution, *alpha, *alpha, baked);
-            baked.eta = Vec3::splat(*eta);
+            baked.eta = *eta;
             baked.flags |= if *nonlinear { MATERIAL_NONLINEAR } else { 0 };
             plastic_table(baked, tables);
         }
@@ -167,10 +177,13 @@ fn bake_model(
             baked.model = MODEL_NULL;
             baked.flags |= MATERIAL_TRANSMISSIVE;
         }
-        Model::Emissive => baked.model = MODEL_EMISSIVE,
+        Model::Emissive => {
+            baked.model = MODEL_EMISSIVE;
+            baked.emission += material.color;
+        }
         Model::Blend { weight, .. } => {
             baked.model = MODEL_BLEND;
-            baked.extra = *weight;
+            baked.blend = *weight;
         }
         Model::Sides { .. } => {
             baked.model = MODEL_BLEND;
@@ -180,37 +193,38 @@ fn bake_model(
     Ok(())
 }
 
-fn bake_roughness(alpha_u: f32, alpha_v: f32, baked: &mut Material) {
-    (baked.m0, baked.m0_v) = (alpha_u, alpha_v);
+fn bake_roughness(alpha_u: f32, alpha_v: f32, baked: &mut Closure) {
+    (baked.alpha_u, baked.alpha_v) = (alpha_u, alpha_v);
     baked.flags |= if alpha_u == alpha_v { 0 } else { MATERIAL_ANISOTROPIC };
 }
 
-fn distribution_bits(distribution: Distribution, lobe: u32) -> u32 {
-    let kind = match distribution {
+fn distribution(distribution: Distribution) -> u32 {
+    match distribution {
         Distribution::Beckmann => DISTRIBUTION_BECKMANN,
         Distribution::Gaussian => DISTRIBUTION_GAUSSIAN,
         Distribution::TrowbridgeReitz => DISTRIBUTION_TROWBRIDGE_REITZ,
         Distribution::Phong => DISTRIBUTION_PHONG,
-    };
-    kind << (DISTRIBUTION_SHIFT + 2 * lobe)
+    }
 }
 
-fn bake_facets(distribution: Distribution, alpha_u: f32, alpha_v: f32, baked: &mut Material) {
+fn bake_facets(kind: Distribution, alpha_u: f32, alpha_v: f32, baked: &mut Closure) {
     bake_roughness(alpha_u, alpha_v, baked);
-    baked.flags |= distribution_bits(distribution, 0);
+    baked.distribution = distribution(kind);
 }
 
-fn bake_lobes(name: &str, lobes: &[Lobe], baked: &mut Material, tables: &mut Vec<f32>) -> Result<(), BakeError> {
+fn bake_lobes(name: &str, lobes: &[Lobe], baked: &mut Closure, tables: &mut Vec<f32>) -> Result<(), BakeError> {
     let (first, second) = match lobes[..] {
         [first] => (first, Lobe { weight: 0.0, ..first }),
         [first, second] => (first, second),
         _ => return Err(BakeError::Lobes { name: name.to_owned(), count: lobes.len() }),
     };
     bake_facets(first.distribution, first.alpha_u, first.alpha_v, baked);
-    baked.flags |= distribution_bits(second.distribution, 1);
+    baked.second_distribution = distribution(second.distribution);
     baked.flags |= if second.alpha_u == second.alpha_v { 0 } else { MATERIAL_ANISOTROPIC };
-    (baked.m1, baked.m1_v) = (second.alpha_u, second.alpha_v);
-    (baked.w0, baked.w1) = (first.weight, second.weight);
+    let is_general = [first, second].iter().any(|lobe| lobe.distribution != Distribution::Beckmann);
+    baked.flags |= if is_general || baked.flags & MATERIAL_ANISOTROPIC != 0 { MATERIAL_GENERAL_LOBES } else { 0 };
+    (baked.second_alpha_u, baked.second_alpha_v) = (second.alpha_u, second.alpha_v);
+    (baked.weight, baked.second_weight) = (first.weight, second.weight);
     if [first, second].iter().any(|lobe| lobe.distribution == Distribution::Gaussian) {
         constant_table(baked, tables);
     }
@@ -218,31 +232,30 @@ fn bake_lobes(name: &str, lobes: &[Lobe], baked: &mut Material, tables: &mut Vec
 }
 
 /// How the interface reflects.
-fn bake_fresnel(fresnel: Fresnel, baked: &mut Material) {
+fn bake_fresnel(fresnel: Fresnel, baked: &mut Closure) {
     match fresnel {
-        Fresnel::Dielectric { eta } => baked.eta = Vec3::splat(eta),
+        Fresnel::Dielectric { eta } => baked.eta = eta,
         Fresnel::Conductor { eta, k } => {
-            (baked.eta, baked.k) = (eta, k);
+            (baked.metal_eta, baked.metal_k) = (eta, k);
             baked.flags |= MATERIAL_CONDUCTOR;
         }
         Fresnel::Schlick { f0 } => {
-            baked.eta = f0;
+            baked.f0 = f0;
             baked.flags |= MATERIAL_SCHLICK;
         }
     }
 }
 
-fn bake_principled(principled: &Principled, baked: &mut Material) {
+fn bake_principled(principled: &Principled, baked: &mut Closure) {
     let p = principled;
     baked.model = MODEL_PRINCIPLED;
-    (baked.m0, baked.extra) = (p.roughness, p.metallic);
-    baked.eta = Vec3::splat(p.eta.max(1.0 + ETA_LEAST));
+    baked.eta = p.eta.max(1.0 + ETA_LEAST);
     baked.flags |= if p.anisotropic == 0.0 { 0 } else { MATERIAL_ANISOTROPIC };
     baked.flags |= if p.spec_trans == 0.0 { 0 } else { MATERIAL_TRANSMISSIVE };
-    // The places that `shading/principled` names.
-    baked.k = Vec3::new(p.anisotropic, p.spec_trans, p.spec_tint);
-    (baked.w0, baked.w1) = (p.sheen, p.sheen_tint);
-    (baked.k_d, baked.k_s, baked.exponent) = (p.flatness, p.clearcoat, p.clearcoat_gloss);
+    (baked.roughness, baked.metallic, baked.anisotropic) = (p.roughness, p.metallic, p.anisotropic);
+    (baked.spec_trans, baked.spec_tint) = (p.spec_trans, p.spec_tint);
+    (baked.sheen, baked.sheen_tint, baked.flatness) = (p.sheen, p.sheen_tint, p.flatness);
+    (baked.clearcoat, baked.clearcoat_gloss) = (p.clearcoat, p.clearcoat_gloss);
 }
 
 /// What a material is made of, if of others.
@@ -255,7 +268,7 @@ fn parts(material: &scene::Material) -> Option<[usize; 2]> {
 
 /// Puts copies of each blend's two materials one after the other at the end of `baked`, where the blend's `table` says, with
 /// what the blend itself emits; the blend's own emission becomes what it shows on average.
-pub fn bake_blends(materials: &[scene::Material], baked: &mut Vec<Material>) -> Result<(), BakeError> {
+pub fn bake_blends(materials: &[scene::Material], baked: &mut Vec<Baked>) -> Result<(), BakeError> {
     for (index, material) in materials.iter().enumerate() {
         if parts(material).is_some() {
             let leaves = blend_leaves(materials, index, 0);
@@ -277,35 +290,59 @@ fn blend_leaves(materials: &[scene::Material], index: usize, depth: usize) -> Op
     }
 }
 
-/// Places what record `place`, of material `index`, is made of.
-fn place_parts(materials: &[scene::Material], index: usize, place: usize, baked: &mut Vec<Material>) {
+/// Places what material `place`, number `index` of the scene's, is made of.
+fn place_parts(materials: &[scene::Material], index: usize, place: usize, baked: &mut Vec<Baked>) {
     let Some(children) = parts(&materials[index]) else { return };
-    let (blend, first) = (baked[place], baked.len());
+    let (blend, first) = (baked[place].closure, baked.len());
     for child in children {
         let own = &materials[child];
+        // What shines by itself has its colour for emission.
+        let own_emission = if matches!(own.model, Model::Emissive) { own.emission + own.color } else { own.emission };
         let from_blend = blend.emission != Vec3::ZERO && own.emission == Vec3::ZERO;
         let one_sided = if from_blend { blend.flags & MATERIAL_EMIT_ONE_SIDED != 0 } else { !own.emission_two_sided };
-        // Its own record may have become that of a blend already.
-        let mut copy = Material { emission: own.emission + blend.emission, ..baked[child] };
-        copy.flags =
-            if one_sided { copy.flags | MATERIAL_EMIT_ONE_SIDED } else { copy.flags & !MATERIAL_EMIT_ONE_SIDED };
+        // Its own closure may have become that of a blend already.
+        let mut copy = baked[child];
+        copy.closure.emission = own_emission + blend.emission;
+        let flags = copy.closure.flags;
+        copy.closure.flags = if one_sided { flags | MATERIAL_EMIT_ONE_SIDED } else { flags & !MATERIAL_EMIT_ONE_SIDED };
         baked.push(copy);
     }
     for (k, child) in children.into_iter().enumerate() {
         place_parts(materials, child, first + k, baked);
     }
-    let shown = |k: usize| emission_material(&baked[first + k]) * own_weight(&baked[first + k]);
-    let second = if blend.flags & MATERIAL_BY_SIDE != 0 { 0.5 } else { blend.extra.clamp(0.0, 1.0) };
+    let part = |k: usize| baked[first + k].closure;
+    let shown = |k: usize| part(k).emission * own_weight(part(k).flags, part(k).k_t);
+    let second = if blend.flags & MATERIAL_BY_SIDE != 0 { 0.5 } else { blend.blend.clamp(0.0, 1.0) };
     let emission = shown(0) * (1.0 - second) + shown(1) * second;
     // A light sample may come from behind if any part shines there; the part that it meets then says what it sends.
-    let shines_back =
-        |part: &Material| emission_material(part) != Vec3::ZERO && part.flags & MATERIAL_EMIT_ONE_SIDED == 0;
-    let two_sided = baked[first..first + 2].iter().any(shines_back);
-    let record = &mut baked[place];
-    record.table = first as u32;
-    record.emission = emission;
-    record.flags &= !MATERIAL_EMIT_ONE_SIDED;
-    record.flags |= if two_sided { 0 } else { MATERIAL_EMIT_ONE_SIDED };
+    let shines_back = |part: Closure| part.emission != Vec3::ZERO && part.flags & MATERIAL_EMIT_ONE_SIDED == 0;
+    let two_sided = shines_back(part(0)) || shines_back(part(1));
+    let closure = &mut baked[place].closure;
+    closure.first_part = first as u32;
+    closure.emission = emission;
+    closure.flags &= !MATERIAL_EMIT_ONE_SIDED;
+    closure.flags |= if two_sided { 0 } else { MATERIAL_EMIT_ONE_SIDED };
+}
+
+/// Writes the records of all materials, and the blocks of their models.
+pub fn pack_materials(baked: &[Baked], data: &mut SceneArrays) {
+    for Baked { closure, first_texture, texture_count } in baked {
+        let block = pack_block(closure, &mut data.parameters);
+        data.materials.push(Material {
+            emission: closure.emission,
+            model: closure.model,
+            transmit_color: closure.transmit_color,
+            k_t: closure.k_t,
+            absorption: closure.absorption,
+            rank: closure.rank,
+            flags: closure.flags,
+            block,
+            first_texture: *first_texture,
+            texture_count: *texture_count,
+        });
+    }
+    // Kernels load as many words of each block as the longest has.
+    data.parameters.extend([[0; 4]; BLOCK_WORDS_MOST]);
 }
 
 /// Whether a surface of this material casts a shadow: what it says, or else all but transparent panes do, and what is not there.

@@ -4,7 +4,7 @@ use super::emitter::{bake_emitters, bake_surroundings};
 use super::filter::filter_table;
 use super::light::{bake_light, unit};
 use super::media::rank_media;
-use super::model::{bake_blends, bake_material, casts_shadow};
+use super::model::{Baked, bake_blends, bake_material, casts_shadow, pack_materials};
 use super::shapes::{Shapes, bake_shapes, shapes_key};
 use super::srgb::srgb_table;
 use super::texture::{bake_textures, bind_textures};
@@ -17,7 +17,6 @@ use crate::layout::{
 use crate::scene::{
     self, Film, Geometry, Integrator, Material, MaterialId, Object, Projection, Sampler, Scene, Shading, Shadows,
 };
-use crate::shading::material::emission_material;
 use crate::watch::Watch;
 use bytemuck::Zeroable;
 use glam::{DVec3, Vec3};
@@ -115,20 +114,23 @@ fn traced(scene: &Scene) -> bool {
 
 /// Bakes all materials, and one more where an object or face names none (`default_material`).
 fn bake_materials(scene: &Scene, data: &mut SceneArrays) -> Result<(), BakeError> {
+    let mut baked = Vec::new();
     for material in &scene.materials {
-        let mut baked = bake_material(material, &scene.tables, traced(scene), &mut data.tables)?;
-        bind_textures(material, &mut baked, data)?;
-        data.materials.push(baked);
+        let closure = bake_material(material, &scene.tables, traced(scene), &mut data.tables)?;
+        baked.push(Baked { closure, ..Baked::default() });
+        bind_textures(material, baked.last_mut().expect("just pushed"), data)?;
     }
     let nameless = |object: &Object| match object.geometry {
         Geometry::Sphere => object.material.is_none(),
         Geometry::Mesh(id) => object.material.is_none() && scene.meshes[id.0 as usize].face_materials.is_empty(),
     };
     if scene.objects.iter().any(nameless) {
-        data.materials.push(bake_material(&Material::grey("default"), &[], traced(scene), &mut data.tables)?);
+        let closure = bake_material(&Material::grey("default"), &[], traced(scene), &mut data.tables)?;
+        baked.push(Baked { closure, ..Baked::default() });
     }
-    rank_media(&scene.materials, data)?;
-    bake_blends(&scene.materials, &mut data.materials)?;
+    rank_media(&scene.materials, &mut baked, data)?;
+    bake_blends(&scene.materials, &mut baked)?;
+    pack_materials(&baked, data);
     check_count("table entries", data.tables.len())
 }
 
@@ -156,7 +158,7 @@ fn bake_light_sources(scene: &Scene, data: &mut SceneArrays) -> Result<(), BakeE
     if scene.ambient != Vec3::ZERO {
         data.warnings.push("ambient light has no effect under path and direct: light comes from what glows".to_owned());
     }
-    let shines = |material: &crate::layout::Material| emission_material(material) != Vec3::ZERO;
+    let shines = |material: &crate::layout::Material| material.emission != Vec3::ZERO;
     data.features.has_glow = scene.background.shines() || data.materials.iter().any(shines);
     bake_emitters(environment, data)
 }

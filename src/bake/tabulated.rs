@@ -1,15 +1,16 @@
 //! Tables for directions of light in the layout of `shading/tabulated`.
 
-use crate::layout::{MATERIAL_ANISOTROPIC, MODEL_TABULATED, Material};
+use crate::layout::{MATERIAL_ANISOTROPIC, MODEL_TABULATED};
 use crate::scene::DirectionalTable;
+use crate::shading::closure::Closure;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Appends a table. The values at the first and last view angle hold up to the normal and down to the horizon.
-pub fn tabulated_table(table: &DirectionalTable, material: &mut Material, tables: &mut Vec<f32>) {
+pub fn tabulated_table(table: &DirectionalTable, closure: &mut Closure, tables: &mut Vec<f32>) {
     debug_assert_eq!(table.values.len() as u64, table.count());
-    material.model = MODEL_TABULATED;
-    material.flags |= if table.light_azimuths > 1 { MATERIAL_ANISOTROPIC } else { 0 };
-    material.table = tables.len() as u32;
+    closure.model = MODEL_TABULATED;
+    closure.flags |= if table.light_azimuths > 1 { MATERIAL_ANISOTROPIC } else { 0 };
+    closure.table = tables.len() as u32;
     let (angles, rows) = view_rows(&table.view_angles);
     let azimuths = table.view_azimuths as usize;
     let counts = [table.light_angles.len(), table.light_azimuths as usize, angles.len(), azimuths, table.fold as usize];

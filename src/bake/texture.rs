@@ -2,16 +2,18 @@
 //! one for each use by a material.
 
 use super::mip::mip_levels;
+use super::model::Baked;
 use super::srgb::srgb_table;
 use super::{BakeError, SceneArrays};
 use crate::layout::{
     CHANNEL_A, CHANNEL_B, CHANNEL_G, CHANNEL_R, CHANNEL_RGB, MAGNIFY_BILINEAR, MAGNIFY_NEAREST, MATERIAL_ANISOTROPIC,
-    Material, PARAMETER_ANISOTROPIC, PARAMETER_BUMP, PARAMETER_CLEARCOAT, PARAMETER_CLEARCOAT_GLOSS, PARAMETER_COLOR,
-    PARAMETER_EMISSION, PARAMETER_FLATNESS, PARAMETER_MASK, PARAMETER_METALLIC, PARAMETER_NORMAL, PARAMETER_OPACITY,
-    PARAMETER_ROUGHNESS, PARAMETER_ROUGHNESS_U, PARAMETER_ROUGHNESS_V, PARAMETER_SHEEN, PARAMETER_SHEEN_TINT,
-    PARAMETER_SPEC_TINT, PARAMETER_SPEC_TRANS, PARAMETER_SPECULAR_COLOR, PARAMETER_WEIGHT, PATTERN_CHECKER,
-    PATTERN_GRADIENT, PATTERN_NOISE, PATTERN_ZONE_PLATE, TEXEL_FLOAT, TEXEL_LINEAR8, TEXEL_SRGB8, TEXTURES_MOST,
-    Texture, WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT,
+    MATERIAL_GENERAL_LOBES, MODEL_COOK_TORRANCE, MODEL_EMISSIVE, PARAMETER_ANISOTROPIC, PARAMETER_BUMP,
+    PARAMETER_CLEARCOAT, PARAMETER_CLEARCOAT_GLOSS, PARAMETER_COLOR, PARAMETER_EMISSION, PARAMETER_FLATNESS,
+    PARAMETER_MASK, PARAMETER_METALLIC, PARAMETER_NORMAL, PARAMETER_OPACITY, PARAMETER_ROUGHNESS,
+    PARAMETER_ROUGHNESS_U, PARAMETER_ROUGHNESS_V, PARAMETER_SHEEN, PARAMETER_SHEEN_TINT, PARAMETER_SPEC_TINT,
+    PARAMETER_SPEC_TRANS, PARAMETER_SPECULAR_COLOR, PARAMETER_WEIGHT, PATTERN_CHECKER, PATTERN_GRADIENT, PATTERN_NOISE,
+    PATTERN_ZONE_PLATE, TEXEL_FLOAT, TEXEL_LINEAR8, TEXEL_SRGB8, TEXTURES_MOST, Texture, WRAP_CLAMP, WRAP_MIRROR,
+    WRAP_REPEAT,
 };
 use crate::scene::{self, Channel, Parameter, Pattern, PatternKind, TextureBinding, TextureData, Wrap};
 
@@ -36,11 +38,7 @@ pub fn bake_textures(textures: &[scene::Texture], data: &mut SceneArrays) {
 }
 
 /// Appends a record for each texture that `material` binds, and writes their place into `baked`.
-pub fn bind_textures(
-    material: &scene::Material,
-    baked: &mut Material,
-    data: &mut SceneArrays,
-) -> Result<(), BakeError> {
+pub fn bind_textures(material: &scene::Material, baked: &mut Baked, data: &mut SceneArrays) -> Result<(), BakeError> {
     let count = material.textures.len();
     if count > TEXTURES_MOST as usize {
         return Err(BakeError::Textures { name: material.name.clone(), count });
@@ -48,9 +46,14 @@ pub fn bind_textures(
     (baked.first_texture, baked.texture_count) = (data.textures.len() as u32, count as u32);
     for binding in &material.textures {
         if matches!(binding.parameter, Parameter::RoughnessU | Parameter::RoughnessV) {
-            baked.flags |= MATERIAL_ANISOTROPIC;
+            baked.closure.flags |= MATERIAL_ANISOTROPIC;
+            baked.closure.flags |= if baked.closure.model == MODEL_COOK_TORRANCE { MATERIAL_GENERAL_LOBES } else { 0 };
         }
-        let record = bound(binding, data.textures[binding.texture.0 as usize]);
+        let mut record = bound(binding, data.textures[binding.texture.0 as usize]);
+        // The colour of what shines by itself is its emission.
+        if baked.closure.model == MODEL_EMISSIVE && record.parameter == PARAMETER_COLOR {
+            record.parameter = PARAMETER_EMISSION;
+        }
         data.textures.push(record);
     }
     Ok(())

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::camera::Camera;
 
 /// Where each array of the data heap begins, in 16-byte words. The heap has the arrays in this order; they are those of
-/// `SceneView` with the same names. 44 bytes.
+/// `SceneView` with the same names. 48 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct HeapStarts {
@@ -15,6 +15,7 @@ pub struct HeapStarts {
     pub faces: u32,
     pub vertices: u32,
     pub materials: u32,
+    pub parameters: u32,
     pub lights: u32,
     pub textures: u32,
     pub texels: u32,
@@ -72,7 +73,6 @@ pub struct SceneHeader {
     pub media_table: u32,
     pub _pad0: u32,
     pub _pad1: u32,
-    pub _pad2: u32,
 }
 
 /// Intervals in the tabulated filter's inverse CDF.

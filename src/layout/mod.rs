@@ -21,6 +21,7 @@ pub mod geometry;
 pub mod header;
 pub mod light;
 pub mod material;
+pub mod model;
 pub mod path;
 pub mod texture;
 
@@ -34,6 +35,7 @@ pub use geometry::*;
 pub use header::*;
 pub use light::*;
 pub use material::*;
+pub use model::*;
 pub use path::*;
 pub use texture::*;
 
@@ -52,6 +54,8 @@ pub struct SceneView<'a> {
     pub faces: &'a [Face],
     pub vertices: &'a [Vertex],
     pub materials: &'a [Material],
+    /// Blocks of the materials' models (`layout/model`).
+    pub parameters: &'a [[u32; 4]],
     pub lights: &'a [Light],
     pub emitters: &'a [Emitter],
     pub environments: &'a [EnvironmentMap],
@@ -73,6 +77,7 @@ impl<'a> SceneView<'a> {
             faces: &[],
             vertices: &[],
             materials: &[],
+            parameters: &[],
             lights: &[],
             emitters: &[],
             environments: &[],

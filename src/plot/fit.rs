@@ -9,8 +9,8 @@ use super::lobes;
 use super::shelf::{Shelf, shelf_of};
 use super::simplex::minimise;
 use crate::bake::BakeError;
-use crate::layout;
 use crate::scene::{Fresnel, Lobe, Masking, Material, Model, Rgb, Scene, WardNormalisation};
+use crate::shading::closure::Closure;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI, TAU};
@@ -68,15 +68,15 @@ impl FitModel {
         Material { color: Rgb::ZERO, k_d: 0.0, k_s: 1.0, model, ..Material::grey(self.name()) }
     }
 
-    /// Writes the shape into the lobe's record.
-    fn reshape(self, record: &mut layout::Material, shape: &[f64]) {
+    /// Writes the shape into the lobe's closure.
+    fn reshape(self, closure: &mut Closure, shape: &[f64]) {
         let number = |index: usize| shape[index.min(shape.len() - 1)] as f32;
         match self {
-            Self::Phong => record.exponent = number(0),
-            Self::Ward => (record.m0, record.m0_v) = (number(0), number(1)),
+            Self::Phong => closure.exponent = number(0),
+            Self::Ward => (closure.alpha_u, closure.alpha_v) = (number(0), number(1)),
             Self::CookTorrance => {
-                (record.m0, record.m0_v) = (number(0), number(0));
-                record.eta = Vec3::splat(number(1));
+                (closure.alpha_u, closure.alpha_v) = (number(0), number(0));
+                closure.eta = number(1);
             }
         }
     }
@@ -172,9 +172,9 @@ fn fit_one(model: FitModel, pairs: &[Pair], whole: f64, anisotropic: bool) -> Re
     let attempt = |logarithms: &[f64]| {
         let range = |(x, (_, [low, high])): (&f64, &(&[f64], [f64; 2]))| libm::exp(*x).clamp(*low, *high);
         let shape: Vec<f64> = logarithms.iter().zip(&numbers).map(range).collect();
-        let mut record = lobe.record(0);
-        model.reshape(&mut record, &shape);
-        let values = pairs.par_iter().map(|pair| lobe.eval_record(&record, pair.wo, pair.wi)).collect::<Vec<f64>>();
+        let mut closure = lobe.closure(0);
+        model.reshape(&mut closure, &shape);
+        let values = pairs.par_iter().map(|pair| lobe.eval_closure(&closure, pair.wo, pair.wi)).collect::<Vec<f64>>();
         let (diffuse, specular, squares) = colors(model, pairs, &values);
         Fit { model, shape, diffuse, specular, error: libm::sqrt(squares.max(0.0) / whole) }
     };

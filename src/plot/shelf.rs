@@ -1,9 +1,10 @@
 //! Materials as the renderer evaluates them: baked, and asked by name.
 
 use crate::bake::{BakeError, SceneData, bake};
-use crate::layout::{self, MATERIAL_ANISOTROPIC, MODEL_BLEND, SAMPLER_SOBOL};
+use crate::layout::{MATERIAL_ANISOTROPIC, MODEL_BLEND, SAMPLER_SOBOL};
 use crate::scene::{Camera, Material, Projection, Scene};
-use crate::shading::material::{eval_material, sample_material};
+use crate::shading::closure::{Closure, closure_of};
+use crate::shading::material::{eval_closure, sample_closure};
 use crate::shading::sampling::{SampleKey, sample_1d, sample_2d};
 use crate::shading::spectrum::{Spectrum, spectrum_luminance};
 use glam::{Vec2, Vec3};
@@ -62,47 +63,47 @@ impl Shelf {
     }
 
     fn spectrum(&self, index: usize, wo: Vec3, wi: Vec3) -> Spectrum {
-        let material = &self.data.materials[index];
-        if material.model == MODEL_BLEND {
-            let (first, weight) = (material.table as usize, material.extra);
+        let closure = self.closure(index);
+        if closure.model == MODEL_BLEND {
+            let (first, weight) = (closure.first_part as usize, closure.blend);
             return self.spectrum(first, wo, wi) * (1.0 - weight) + self.spectrum(first + 1, wo, wi) * weight;
         }
-        eval_material(&self.data.view(), material, wo, wi)
+        eval_closure(&self.data.view(), &closure, wo, wi)
     }
 
-    /// Material number `index` as the renderer reads it.
-    pub fn record(&self, index: usize) -> layout::Material {
-        self.data.materials[index]
+    /// Material number `index` as the renderer evaluates it.
+    pub fn closure(&self, index: usize) -> Closure {
+        closure_of(&self.data.view(), &self.data.materials[index])
     }
 
-    /// `eval` of a record, green.
-    pub fn eval_record(&self, record: &layout::Material, wo: Vec3, wi: Vec3) -> f64 {
-        f64::from(eval_material(&self.data.view(), record, wo, wi).y)
+    /// `eval` of a closure, green.
+    pub fn eval_closure(&self, closure: &Closure, wo: Vec3, wi: Vec3) -> f64 {
+        f64::from(eval_closure(&self.data.view(), closure, wo, wi).y)
     }
 
     /// Whether turning the surface changes what material number `index` reflects.
     pub fn is_anisotropic(&self, index: usize) -> bool {
-        let material = &self.data.materials[index];
-        if material.model == MODEL_BLEND {
-            let first = material.table as usize;
+        let closure = self.closure(index);
+        if closure.model == MODEL_BLEND {
+            let first = closure.first_part as usize;
             return self.is_anisotropic(first) || self.is_anisotropic(first + 1);
         }
-        material.flags & MATERIAL_ANISOTROPIC != 0
+        closure.flags & MATERIAL_ANISOTROPIC != 0
     }
 
     /// The part of white light from everywhere that goes to `wo`, by sampling: the mean weight of `count` samples,
     /// lobes of zero width included.
     pub fn albedo(&self, index: usize, wo: Vec3, count: u32) -> f64 {
-        let material = &self.data.materials[index];
-        if material.model == MODEL_BLEND {
-            let (first, weight) = (material.table as usize, f64::from(material.extra));
+        let closure = self.closure(index);
+        if closure.model == MODEL_BLEND {
+            let (first, weight) = (closure.first_part as usize, f64::from(closure.blend));
             return (1.0 - weight) * self.albedo(first, wo, count) + weight * self.albedo(first + 1, wo, count);
         }
         let view = self.data.view();
         let weight = |sample_index: u32| {
             let key = SampleKey { sampling: SAMPLER_SOBOL, strata: 1, seed: 0, pixel: 0, sample_index, path_id: 0 };
             let (u, u_lobe): (Vec2, f32) = (sample_2d(key, 0), sample_1d(key, 1));
-            let sample = sample_material(&view, material, wo, u, u_lobe);
+            let sample = sample_closure(&view, &closure, wo, u, u_lobe);
             if sample.pdf > 0.0 { f64::from(spectrum_luminance(sample.weight)) } else { 0.0 }
         };
         (0..count).map(weight).sum::<f64>() / f64::from(count)

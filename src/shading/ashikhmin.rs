@@ -2,7 +2,7 @@
 //! exponents n_u (`exponent`) along the tangent and n_v (`exponent_v`) across.
 //! Source: Ashikhmin and Shirley 2000, "An Anisotropic Phong BRDF Model", equations 4 to 9.
 
-use crate::layout::Material;
+use crate::shading::closure::Closure;
 use crate::shading::fresnel::fresnel_schlick3;
 use crate::shading::lobe::{
     DirectionSample, cos_power, make_direction, no_direction, on_upper_side, reflect_about, sample_cos_power,
@@ -16,15 +16,15 @@ use glam::{Vec2, Vec3};
 
 /// Density of the lobe's half vectors: sqrt((n_u + 1)(n_v + 1)) / (2 pi) (N.H)^(n_u cos^2 phi + n_v sin^2 phi).
 #[inline]
-pub fn ashikhmin_lobe(material: &Material, wm: Vec3) -> f32 {
+pub fn ashikhmin_lobe(closure: &Closure, wm: Vec3) -> f32 {
     let x2 = wm.x * wm.x;
     let y2 = wm.y * wm.y;
     let across = x2 + y2;
-    let mut n = material.exponent;
+    let mut n = closure.exponent;
     if across > 1.0e-12 {
-        n = div(material.exponent * x2 + material.exponent_v * y2, across);
+        n = div(closure.exponent * x2 + closure.exponent_v * y2, across);
     }
-    let norm = sqrt_((material.exponent + 1.0) * (material.exponent_v + 1.0));
+    let norm = sqrt_((closure.exponent + 1.0) * (closure.exponent_v + 1.0));
     (norm * INV_TWO_PI) * cos_power(wm.z, n)
 }
 
@@ -38,62 +38,62 @@ pub fn ashikhmin_falloff(cos_theta: f32) -> f32 {
 
 /// Diffuse and specular reflection times cosine, per steradian. Local frame; zero unless both are on the upper side.
 #[inline]
-pub fn eval_ashikhmin(material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
+pub fn eval_ashikhmin(closure: &Closure, wo: Vec3, wi: Vec3) -> Spectrum {
     if !on_upper_side(wo, wi) {
         return spectrum_zero();
     }
     let wm = normalize3(wo + wi);
     let v_h = min_(dot3(wo, wm), 1.0);
-    let r_s = material.specular_color * material.k_s;
+    let r_s = closure.specular_color * closure.k_s;
     // equation 4, whose 8 pi is 4 times the density's 2 pi
-    let lobe = div(ashikhmin_lobe(material, wm), (4.0 * max_(v_h, 1.0e-7)) * max_(wo.z, wi.z));
+    let lobe = div(ashikhmin_lobe(closure, wm), (4.0 * max_(v_h, 1.0e-7)) * max_(wo.z, wi.z));
     let specular = fresnel_schlick3(v_h, r_s) * (lobe * wi.z);
     // equation 5: 28 / (23 pi)
     let falloff = (0.387507647 * ashikhmin_falloff(wo.z)) * ashikhmin_falloff(wi.z);
-    let diffuse = (material.color * (Vec3::splat(1.0) - r_s)) * ((material.k_d * falloff) * wi.z);
+    let diffuse = (closure.color * (Vec3::splat(1.0) - r_s)) * ((closure.k_d * falloff) * wi.z);
     spectrum_from_rgb(diffuse + specular)
 }
 
 /// Probability of sampling the specular lobe: what Fresnel reflects at the viewer's angle against the rest.
 #[inline]
-pub fn ashikhmin_probability(material: &Material, cos_o: f32) -> f32 {
-    let r_s = material.k_s * max3_(material.specular_color);
+pub fn ashikhmin_probability(closure: &Closure, cos_o: f32) -> f32 {
+    let r_s = closure.k_s * max3_(closure.specular_color);
     let specular = max3_(fresnel_schlick3(cos_o, Vec3::splat(r_s)));
-    let diffuse = (material.k_d * max3_(material.color)) * (1.0 - min_(r_s, 1.0));
+    let diffuse = (closure.k_d * max3_(closure.color)) * (1.0 - min_(r_s, 1.0));
     let sum = specular + diffuse;
     if sum > 1.0e-20 { div(specular, sum) } else { 0.0 }
 }
 
 /// Density of `sample_ashikhmin`; its integral over the upper side is below 1 by what falls under the horizon.
 #[inline]
-pub fn pdf_ashikhmin(material: &Material, wo: Vec3, wi: Vec3) -> f32 {
+pub fn pdf_ashikhmin(closure: &Closure, wo: Vec3, wi: Vec3) -> f32 {
     if !on_upper_side(wo, wi) {
         return 0.0;
     }
-    let p = ashikhmin_probability(material, wo.z);
+    let p = ashikhmin_probability(closure, wo.z);
     let wm = normalize3(wo + wi);
-    let specular = div(ashikhmin_lobe(material, wm), 4.0 * max_(dot3(wo, wm), 1.0e-7));
+    let specular = div(ashikhmin_lobe(closure, wm), 4.0 * max_(dot3(wo, wm), 1.0e-7));
     (1.0 - p) * (wi.z * INV_PI) + p * specular
 }
 
 /// Cosine-weighted, or `wo` mirrored about a half vector of the lobe; what falls below the horizon is dropped.
 /// `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, chooses the lobe.
 #[inline]
-pub fn sample_ashikhmin(material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
+pub fn sample_ashikhmin(closure: &Closure, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
     let mut wi = square_to_cosine_hemisphere(u);
-    if u_lobe < ashikhmin_probability(material, wo.z) {
+    if u_lobe < ashikhmin_probability(closure, wo.z) {
         // equation 9: tan phi = sqrt((n_u + 1) / (n_v + 1)) tan(2 pi u)
-        let x = sqrt_(material.exponent_v + 1.0) * cos_turns(u.y);
-        let y = sqrt_(material.exponent + 1.0) * sin_turns(u.y);
+        let x = sqrt_(closure.exponent_v + 1.0) * cos_turns(u.y);
+        let y = sqrt_(closure.exponent + 1.0) * sin_turns(u.y);
         let inv = rsqrt(max_(x * x + y * y, 1.0e-20));
         let cos_phi = x * inv;
         let sin_phi = y * inv;
-        let n = material.exponent * (cos_phi * cos_phi) + material.exponent_v * (sin_phi * sin_phi);
+        let n = closure.exponent * (cos_phi * cos_phi) + closure.exponent_v * (sin_phi * sin_phi);
         let about = sample_cos_power(Vec2::new(u.x, 0.0), n);
         wi = reflect_about(wo, Vec3::new(about.x * cos_phi, about.x * sin_phi, about.z));
     }
     if !on_upper_side(wo, wi) {
         return no_direction();
     }
-    make_direction(wi, pdf_ashikhmin(material, wo, wi))
+    make_direction(wi, pdf_ashikhmin(closure, wo, wi))
 }

@@ -3,7 +3,8 @@
 //! Both functions are exact for unpolarised light. Source: Born and Wolf 1999, "Principles of Optics", section 1.5.2
 //! (dielectrics) and 14.2 (metals), written without complex numbers.
 
-use crate::layout::{MATERIAL_CONDUCTOR, MATERIAL_SCHLICK, Material};
+use crate::layout::{MATERIAL_CONDUCTOR, MATERIAL_SCHLICK};
+use crate::shading::closure::Closure;
 use crate::shading::math::{clamp_, div, max_, min_, sqrt_};
 use glam::Vec3;
 
@@ -82,14 +83,14 @@ pub fn fresnel_schlick3(cos_i: f32, f0: Vec3) -> Vec3 {
 /// Fresnel reflectance of a material's interface seen from outside, linear Rec. 709: conductor, Schlick or dielectric by
 /// its flags. `cos_i`: cosine between the interface's or the facet's normal and the direction, 0..1.
 #[inline]
-pub fn fresnel_material(material: &Material, cos_i: f32) -> Vec3 {
-    if (material.flags & MATERIAL_CONDUCTOR) != 0 {
-        return fresnel_conductor3(cos_i, material.eta, material.k);
+pub fn fresnel_closure(closure: &Closure, cos_i: f32) -> Vec3 {
+    if (closure.flags & MATERIAL_CONDUCTOR) != 0 {
+        return fresnel_conductor3(cos_i, closure.metal_eta, closure.metal_k);
     }
-    if (material.flags & MATERIAL_SCHLICK) != 0 {
-        return fresnel_schlick3(cos_i, material.eta);
+    if (closure.flags & MATERIAL_SCHLICK) != 0 {
+        return fresnel_schlick3(cos_i, closure.f0);
     }
-    Vec3::splat(fresnel_dielectric(cos_i, material.eta.x))
+    Vec3::splat(fresnel_dielectric(cos_i, closure.eta))
 }
 
 #[cfg(test)]

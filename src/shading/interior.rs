@@ -3,8 +3,6 @@
 //! A medium's rank is 1 to 255, 0 stands for none (the outside). A list holds four ranks, one a byte, the highest first.
 //! Source: Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images".
 
-use crate::layout::{MODEL_DIELECTRIC, MODEL_ROUGH_DIELECTRIC, Material};
-
 /// The highest rank of a list, 0 if it is empty.
 #[inline]
 pub fn interior_top(list: u32) -> u32 {
@@ -41,17 +39,9 @@ pub fn interior_remove(list: u32, rank: u32) -> u32 {
     if rank == (list & 255) { list & 0xffff_ff00 } else { list }
 }
 
-/// Rank of the medium behind a surface of the material, 0 if it has none.
+/// The list of a ray that an interface to a medium of rank `rank` (0: no medium) has let in (`entering`) or out.
 #[inline]
-pub fn medium_rank(material: &Material) -> u32 {
-    let clear = material.model == MODEL_DIELECTRIC || material.model == MODEL_ROUGH_DIELECTRIC;
-    if clear { material.extra as u32 } else { 0 }
-}
-
-/// The list of a ray that an interface of `material` has let in (`entering`) or out.
-#[inline]
-pub fn cross_interface(list: u32, material: &Material, entering: bool) -> u32 {
-    let rank = medium_rank(material);
+pub fn cross_interface(list: u32, rank: u32, entering: bool) -> u32 {
     if rank == 0 {
         return list;
     }
@@ -61,7 +51,6 @@ pub fn cross_interface(list: u32, material: &Material, entering: bool) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layout::MODEL_MIRROR;
 
     fn ranks(list: u32) -> [u32; 4] {
         [list >> 24, (list >> 16) & 255, (list >> 8) & 255, list & 255]
@@ -98,16 +87,5 @@ mod tests {
         let twice = interior_add(interior_add(0, 4), 4);
         assert_eq!(interior_remove(twice, 4), interior_add(0, 4), "entered twice, left once");
         assert_eq!((interior_remove(0, 4), interior_top(0)), (0, 0));
-    }
-
-    #[test]
-    fn only_clear_bodies_have_a_medium() {
-        let of = |model| Material { model, extra: 3.0, ..Material::default() };
-        for (model, rank) in [(MODEL_DIELECTRIC, 3), (MODEL_ROUGH_DIELECTRIC, 3), (MODEL_MIRROR, 0)] {
-            assert_eq!(medium_rank(&of(model)), rank);
-            let inside = cross_interface(interior_add(0, 9), &of(model), true);
-            assert_eq!(inside, if rank == 0 { interior_add(0, 9) } else { interior_add(interior_add(0, 9), 3) });
-            assert_eq!(cross_interface(inside, &of(model), false), interior_add(0, 9));
-        }
     }
 }

@@ -1,6 +1,6 @@
 //! What the reflection models share: samples, mirror directions, cosine powers, the choice between two lobes.
 
-use crate::layout::Material;
+use crate::shading::closure::Closure;
 use crate::shading::frame::{frame_from_normal, to_world};
 use crate::shading::math::{INV_TWO_PI, TINY, cos_turns, div, dot3, max_, max3_, pow_, rcp, sin_turns, sqrt_};
 use glam::{Vec2, Vec3};
@@ -92,9 +92,9 @@ pub fn turn_to(axis: Vec3, w: Vec3) -> Vec3 {
 /// Probability of sampling the specular lobe rather than the diffuse one, 0..1: by weight and brightest channel.
 /// Zero if the material reflects nothing.
 #[inline]
-pub fn specular_probability(material: &Material) -> f32 {
-    let diffuse = material.k_d * max3_(material.color);
-    let specular = material.k_s * max3_(material.specular_color);
+pub fn specular_probability(closure: &Closure) -> f32 {
+    let diffuse = closure.k_d * max3_(closure.color);
+    let specular = closure.k_s * max3_(closure.specular_color);
     let sum = diffuse + specular;
     if sum > 1.0e-20 { div(specular, sum) } else { 0.0 }
 }
@@ -125,13 +125,13 @@ mod tests {
 
     #[test]
     fn the_specular_share_follows_weights_and_colours() {
-        let mut material =
-            Material { k_d: 0.25, k_s: 0.75, color: Vec3::ONE, specular_color: Vec3::ONE, ..Material::default() };
-        assert_eq!(specular_probability(&material), 0.75);
-        material.color = Vec3::ZERO;
-        assert_eq!(specular_probability(&material), 1.0);
-        material.k_s = 0.0;
-        assert_eq!(specular_probability(&material), 0.0);
+        let mut closure =
+            Closure { k_d: 0.25, k_s: 0.75, color: Vec3::ONE, specular_color: Vec3::ONE, ..Closure::default() };
+        assert_eq!(specular_probability(&closure), 0.75);
+        closure.color = Vec3::ZERO;
+        assert_eq!(specular_probability(&closure), 1.0);
+        closure.k_s = 0.0;
+        assert_eq!(specular_probability(&closure), 0.0);
     }
 
     #[test]

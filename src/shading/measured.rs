@@ -5,7 +5,8 @@
 //! Sources: Matusik et al. 2003, "A Data-Driven Reflectance Model"; Rusinkiewicz 1998, "A New Change of Variables for
 //! Efficient BRDF Representation".
 
-use crate::layout::{Material, SceneView, load_table};
+use crate::layout::{SceneView, load_table};
+use crate::shading::closure::Closure;
 use crate::shading::lobe::{DirectionSample, make_direction, no_direction, on_upper_side, reflect_about};
 use crate::shading::math::{
     HALF_PI, INV_PI, PI, atan2_, clamp_, cos_turns, div, dot3, max_, mix_, normalize3, sin_, sin_turns, sqrt_,
@@ -47,7 +48,7 @@ pub fn measured_edge(cell: u32) -> f32 {
 
 /// Reflection times cosine, per steradian. Local frame; zero unless both directions are on the upper side.
 #[inline]
-pub fn eval_measured(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
+pub fn eval_measured(scene: &SceneView, closure: &Closure, wo: Vec3, wi: Vec3) -> Spectrum {
     if !on_upper_side(wo, wi) {
         return spectrum_zero();
     }
@@ -67,25 +68,25 @@ pub fn eval_measured(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3)
     turn = if turn < 0.0 { turn + 1.0 } else { turn };
     let mut cell = measured_cell_h(wm) * MEASURED_D + measured_cell(theta_d * INV_HALF_PI, MEASURED_D);
     cell = cell * MEASURED_P + measured_cell(turn, MEASURED_P);
-    let first = material.table + (MEASURED_H + 1);
+    let first = closure.table + (MEASURED_H + 1);
     let plane = MEASURED_H * (MEASURED_D * MEASURED_P);
     let value = Vec3::new(
         load_table(scene, first + cell),
         load_table(scene, (first + plane) + cell),
         load_table(scene, (first + 2 * plane) + cell),
     );
-    spectrum_from_rgb((material.specular_color * value) * wi.z)
+    spectrum_from_rgb((closure.specular_color * value) * wi.z)
 }
 
 /// Density of `sample_measured`; its integral over the upper side is below 1 by what falls under the horizon.
 #[inline]
-pub fn pdf_measured(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> f32 {
+pub fn pdf_measured(scene: &SceneView, closure: &Closure, wo: Vec3, wi: Vec3) -> f32 {
     if !on_upper_side(wo, wi) {
         return 0.0;
     }
     let wm = normalize3(wo + wi);
     let cell = measured_cell_h(wm);
-    let share = load_table(scene, material.table + cell + 1) - load_table(scene, material.table + cell);
+    let share = load_table(scene, closure.table + cell + 1) - load_table(scene, closure.table + cell);
     let size = measured_edge(cell + 1) - measured_edge(cell);
     let facets = div(share * wm.z, PI * max_(size, 1.0e-12));
     let specular = div(max_(facets, 0.0), 4.0 * max_(dot3(wo, wm), 1.0e-7));
@@ -95,7 +96,7 @@ pub fn pdf_measured(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) 
 /// Cosine-weighted, or `wo` mirrored about a half vector of a cell drawn by what the table reflects there; what falls below
 /// the horizon is dropped. `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, chooses.
 #[inline]
-pub fn sample_measured(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
+pub fn sample_measured(scene: &SceneView, closure: &Closure, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
     let mut wi = square_to_cosine_hemisphere(u);
     if u_lobe >= MEASURED_COSINE {
         let mut low = 0;
@@ -104,13 +105,13 @@ pub fn sample_measured(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2
         for _ in 0..7 {
             let middle = (low + high) >> 1;
             if middle > low {
-                let below = load_table(scene, material.table + middle) <= u.x;
+                let below = load_table(scene, closure.table + middle) <= u.x;
                 low = if below { middle } else { low };
                 high = if below { high } else { middle };
             }
         }
-        let begin = load_table(scene, material.table + low);
-        let share = load_table(scene, material.table + low + 1) - begin;
+        let begin = load_table(scene, closure.table + low);
+        let share = load_table(scene, closure.table + low + 1) - begin;
         let within = clamp_(div(u.x - begin, share), 0.0, 1.0);
         let sin2 = mix_(measured_edge(low), measured_edge(low + 1), within);
         let sin_h = sqrt_(sin2);
@@ -120,5 +121,5 @@ pub fn sample_measured(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2
     if !on_upper_side(wo, wi) {
         return no_direction();
     }
-    make_direction(wi, pdf_measured(scene, material, wo, wi))
+    make_direction(wi, pdf_measured(scene, closure, wo, wi))
 }

@@ -22,6 +22,7 @@ pub mod ashikhmin;
 pub mod blinn_phong;
 pub mod bsdf;
 pub mod camera;
+pub mod closure;
 pub mod cook_torrance;
 pub mod coordinate;
 pub mod delta;

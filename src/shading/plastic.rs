@@ -7,16 +7,17 @@
 //! Source: Jakob et al. 2022, "Mitsuba 3", plugins `plastic` and `roughplastic`, whose parameters these are; the coat after
 //! Walter et al. 2007.
 
-use crate::layout::{MATERIAL_NONLINEAR, Material, SceneView, load_table};
+use crate::layout::{MATERIAL_NONLINEAR, SceneView, load_table};
 use crate::shading::albedo::albedo_at;
 use crate::shading::bsdf::{BsdfSample, SAMPLE_DELTA, finish_sample, make_sample, no_sample};
+use crate::shading::closure::Closure;
 use crate::shading::distribution::{facet_d, pdf_facet, sample_facet, smith_g_separable};
 use crate::shading::fresnel::fresnel_dielectric;
 use crate::shading::lobe::{
     COS_MIN, DirectionSample, make_direction, no_direction, on_upper_side, reflect_about, reflect_local,
 };
 use crate::shading::math::{INV_PI, div, dot3, max_, min_, normalize3, rcp};
-use crate::shading::rough_conductor::{first_distribution, first_scale};
+use crate::shading::rough_conductor::first_scale;
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_zero};
 use crate::shading::warp::square_to_cosine_hemisphere;
 use glam::{Vec2, Vec3};
@@ -29,22 +30,22 @@ pub fn coated_channel(color: f32, inner: f32, nonlinear: bool) -> f32 {
 
 /// The base's part times cosine, per steradian. `transmitted`: T(o) T(i). `inner`: the coat's reflectance from inside.
 #[inline]
-pub fn coated_diffuse(material: &Material, transmitted: f32, inner: f32, cos_i: f32) -> Vec3 {
-    let nonlinear = (material.flags & MATERIAL_NONLINEAR) != 0;
-    let inv_eta = rcp(material.eta.x);
+pub fn coated_diffuse(closure: &Closure, transmitted: f32, inner: f32, cos_i: f32) -> Vec3 {
+    let nonlinear = (closure.flags & MATERIAL_NONLINEAR) != 0;
+    let inv_eta = rcp(closure.eta);
     let scale = ((INV_PI * cos_i) * (inv_eta * inv_eta)) * transmitted;
     Vec3::new(
-        coated_channel(material.color.x, inner, nonlinear),
-        coated_channel(material.color.y, inner, nonlinear),
-        coated_channel(material.color.z, inner, nonlinear),
+        coated_channel(closure.color.x, inner, nonlinear),
+        coated_channel(closure.color.y, inner, nonlinear),
+        coated_channel(closure.color.z, inner, nonlinear),
     ) * scale
 }
 
 /// Probability of sampling the coat, which reflects the share `reflected` of what comes, rather than the base.
 #[inline]
-pub fn coat_probability(material: &Material, reflected: f32) -> f32 {
-    let s = (material.specular_color.x + material.specular_color.y) + material.specular_color.z;
-    let d = (material.color.x + material.color.y) + material.color.z;
+pub fn coat_probability(closure: &Closure, reflected: f32) -> f32 {
+    let s = (closure.specular_color.x + closure.specular_color.y) + closure.specular_color.z;
+    let d = (closure.color.x + closure.color.y) + closure.color.z;
     let coat = reflected * s;
     let base = (1.0 - reflected) * d;
     if coat + base > 1.0e-20 { div(coat, coat + base) } else { 0.0 }
@@ -52,82 +53,82 @@ pub fn coat_probability(material: &Material, reflected: f32) -> f32 {
 
 /// The base's part times cosine, per steradian; zero unless both directions are on the upper side.
 #[inline]
-pub fn eval_plastic(material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
+pub fn eval_plastic(closure: &Closure, wo: Vec3, wi: Vec3) -> Spectrum {
     if !on_upper_side(wo, wi) {
         return spectrum_zero();
     }
-    let t_o = 1.0 - fresnel_dielectric(wo.z, material.eta.x);
-    let t_i = 1.0 - fresnel_dielectric(wi.z, material.eta.x);
-    spectrum_from_rgb(coated_diffuse(material, t_o * t_i, material.extra, wi.z))
+    let t_o = 1.0 - fresnel_dielectric(wo.z, closure.eta);
+    let t_i = 1.0 - fresnel_dielectric(wi.z, closure.eta);
+    spectrum_from_rgb(coated_diffuse(closure, t_o * t_i, closure.inner_reflectance, wi.z))
 }
 
 /// Density of the base's part of `sample_plastic`.
 #[inline]
-pub fn pdf_plastic(material: &Material, wo: Vec3, wi: Vec3) -> f32 {
+pub fn pdf_plastic(closure: &Closure, wo: Vec3, wi: Vec3) -> f32 {
     if !on_upper_side(wo, wi) {
         return 0.0;
     }
-    let p = coat_probability(material, fresnel_dielectric(wo.z, material.eta.x));
+    let p = coat_probability(closure, fresnel_dielectric(wo.z, closure.eta));
     (1.0 - p) * (wi.z * INV_PI)
 }
 
 /// Mirrored by the coat, or cosine-weighted. `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, chooses.
 #[inline]
-pub fn sample_plastic(material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> BsdfSample {
+pub fn sample_plastic(closure: &Closure, wo: Vec3, u: Vec2, u_lobe: f32) -> BsdfSample {
     if wo.z <= COS_MIN {
         return no_sample();
     }
-    let f = fresnel_dielectric(wo.z, material.eta.x);
-    let p = coat_probability(material, f);
+    let f = fresnel_dielectric(wo.z, closure.eta);
+    let p = coat_probability(closure, f);
     if u_lobe < p {
-        let weight = spectrum_from_rgb(material.specular_color * div(f, p));
+        let weight = spectrum_from_rgb(closure.specular_color * div(f, p));
         return make_sample(reflect_local(wo), p, weight, 1.0, SAMPLE_DELTA);
     }
     let wi = square_to_cosine_hemisphere(u);
-    finish_sample(wi, pdf_plastic(material, wo, wi), eval_plastic(material, wo, wi), 1.0, 0)
+    finish_sample(wi, pdf_plastic(closure, wo, wi), eval_plastic(closure, wo, wi), 1.0, 0)
 }
 
 /// Both parts times cosine, per steradian; zero unless both directions are on the upper side.
 #[inline]
-pub fn eval_rough_plastic(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
+pub fn eval_rough_plastic(scene: &SceneView, closure: &Closure, wo: Vec3, wi: Vec3) -> Spectrum {
     if !on_upper_side(wo, wi) {
         return spectrum_zero();
     }
-    let kind = first_distribution(material);
+    let kind = closure.distribution;
     let wm = normalize3(wo + wi);
-    let d = facet_d(kind, material.m0, material.m0, first_scale(scene, material), wm);
-    let g = smith_g_separable(kind, material.m0, material.m0, wo, wi);
-    let f = fresnel_dielectric(min_(dot3(wo, wm), 1.0), material.eta.x);
-    let coat = material.specular_color * div((f * d) * g, 4.0 * wo.z);
-    let through = albedo_at(scene, material.table, wo.z) * albedo_at(scene, material.table, wi.z);
-    spectrum_from_rgb(coat + coated_diffuse(material, through, load_table(scene, material.table + 6), wi.z))
+    let d = facet_d(kind, closure.alpha_u, closure.alpha_u, first_scale(scene, closure), wm);
+    let g = smith_g_separable(kind, closure.alpha_u, closure.alpha_u, wo, wi);
+    let f = fresnel_dielectric(min_(dot3(wo, wm), 1.0), closure.eta);
+    let coat = closure.specular_color * div((f * d) * g, 4.0 * wo.z);
+    let through = albedo_at(scene, closure.table, wo.z) * albedo_at(scene, closure.table, wi.z);
+    spectrum_from_rgb(coat + coated_diffuse(closure, through, load_table(scene, closure.table + 6), wi.z))
 }
 
 /// Density of `sample_rough_plastic`; its integral over the upper side is below 1 by what falls under the horizon.
 #[inline]
-pub fn pdf_rough_plastic(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> f32 {
+pub fn pdf_rough_plastic(scene: &SceneView, closure: &Closure, wo: Vec3, wi: Vec3) -> f32 {
     if !on_upper_side(wo, wi) {
         return 0.0;
     }
-    let p = coat_probability(material, 1.0 - albedo_at(scene, material.table, wo.z));
+    let p = coat_probability(closure, 1.0 - albedo_at(scene, closure.table, wo.z));
     let wm = normalize3(wo + wi);
-    let facets = pdf_facet(first_distribution(material), material.m0, material.m0, wo, wm);
+    let facets = pdf_facet(closure.distribution, closure.alpha_u, closure.alpha_u, wo, wm);
     let coat = div(facets, 4.0 * max_(dot3(wo, wm), 1.0e-7));
     p * coat + (1.0 - p) * (wi.z * INV_PI)
 }
 
 /// `wo` mirrored about a visible facet of the coat, or cosine-weighted. `u`: 0..1 each, excluding 1. `u_lobe`: chooses.
 #[inline]
-pub fn sample_rough_plastic(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
+pub fn sample_rough_plastic(scene: &SceneView, closure: &Closure, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
     if wo.z <= COS_MIN {
         return no_direction();
     }
     let mut wi = square_to_cosine_hemisphere(u);
-    if u_lobe < coat_probability(material, 1.0 - albedo_at(scene, material.table, wo.z)) {
-        wi = reflect_about(wo, sample_facet(first_distribution(material), material.m0, material.m0, wo, u));
+    if u_lobe < coat_probability(closure, 1.0 - albedo_at(scene, closure.table, wo.z)) {
+        wi = reflect_about(wo, sample_facet(closure.distribution, closure.alpha_u, closure.alpha_u, wo, u));
     }
     if !on_upper_side(wo, wi) {
         return no_direction();
     }
-    make_direction(wi, pdf_rough_plastic(scene, material, wo, wi))
+    make_direction(wi, pdf_rough_plastic(scene, closure, wo, wi))
 }

@@ -5,41 +5,36 @@
 //! Sources: Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces"; Kulla and Conty 2017,
 //! "Revisiting Physically Based Shading at Imageworks" (compensation).
 
-use crate::layout::{DISTRIBUTION_GAUSSIAN, DISTRIBUTION_SHIFT, MATERIAL_COMPENSATE, Material, SceneView, load_table};
+use crate::layout::{DISTRIBUTION_GAUSSIAN, MATERIAL_COMPENSATE, SceneView, load_table};
 use crate::shading::albedo::albedo_at;
+use crate::shading::closure::Closure;
 use crate::shading::distribution::{facet_d, pdf_facet, sample_facet, smith_g_separable};
-use crate::shading::fresnel::fresnel_material;
+use crate::shading::fresnel::fresnel_closure;
 use crate::shading::lobe::{COS_MIN, DirectionSample, make_direction, no_direction, on_upper_side, reflect_about};
 use crate::shading::math::{INV_PI, PI, clamp_, div, dot3, max_, min_, normalize3};
 use crate::shading::spectrum::{Spectrum, spectrum_from_rgb, spectrum_zero};
 use crate::shading::warp::square_to_cosine_hemisphere;
 use glam::{Vec2, Vec3};
 
-/// `DISTRIBUTION_*` of lobe 0.
-#[inline]
-pub fn first_distribution(material: &Material) -> u32 {
-    (material.flags >> DISTRIBUTION_SHIFT) & 3
-}
-
 /// The Gaussian's constant of lobe 0; 1 for the other distributions, which know theirs.
 #[inline]
-pub fn first_scale(scene: &SceneView, material: &Material) -> f32 {
-    if first_distribution(material) != DISTRIBUTION_GAUSSIAN {
+pub fn first_scale(scene: &SceneView, closure: &Closure) -> f32 {
+    if closure.distribution != DISTRIBUTION_GAUSSIAN {
         return 1.0;
     }
-    load_table(scene, material.table)
+    load_table(scene, closure.table)
 }
 
 /// Light that leaves after several reflections between facets, times cosine, per steradian and colour channel:
 /// (1 - E(o)) (1 - E(i)) / (pi (1 - E_mean)) F_mean^2 E_mean / (1 - F_mean (1 - E_mean)).
 #[inline]
-pub fn multiple_scattering(scene: &SceneView, material: &Material, cos_o: f32, cos_i: f32) -> Vec3 {
-    let mean = load_table(scene, material.table + 2);
-    let lost = (1.0 - albedo_at(scene, material.table, cos_o)) * (1.0 - albedo_at(scene, material.table, cos_i));
+pub fn multiple_scattering(scene: &SceneView, closure: &Closure, cos_o: f32, cos_i: f32) -> Vec3 {
+    let mean = load_table(scene, closure.table + 2);
+    let lost = (1.0 - albedo_at(scene, closure.table, cos_o)) * (1.0 - albedo_at(scene, closure.table, cos_i));
     let share = div(lost * cos_i, PI * max_(1.0 - mean, 1.0e-6));
-    let f_r = load_table(scene, material.table + 3);
-    let f_g = load_table(scene, material.table + 4);
-    let f_b = load_table(scene, material.table + 5);
+    let f_r = load_table(scene, closure.table + 3);
+    let f_g = load_table(scene, closure.table + 4);
+    let f_b = load_table(scene, closure.table + 5);
     let rest = 1.0 - mean;
     let f = Vec3::new(
         div((f_r * f_r) * mean, 1.0 - f_r * rest),
@@ -51,40 +46,40 @@ pub fn multiple_scattering(scene: &SceneView, material: &Material, cos_o: f32, c
 
 /// Reflection times cosine, per steradian. Local frame; zero unless both directions are on the upper side.
 #[inline]
-pub fn eval_rough_conductor(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
+pub fn eval_rough_conductor(scene: &SceneView, closure: &Closure, wo: Vec3, wi: Vec3) -> Spectrum {
     if !on_upper_side(wo, wi) {
         return spectrum_zero();
     }
-    let kind = first_distribution(material);
+    let kind = closure.distribution;
     let wm = normalize3(wo + wi);
-    let d = facet_d(kind, material.m0, material.m0_v, first_scale(scene, material), wm);
-    let g = smith_g_separable(kind, material.m0, material.m0_v, wo, wi);
-    let f = fresnel_material(material, min_(dot3(wo, wm), 1.0));
+    let d = facet_d(kind, closure.alpha_u, closure.alpha_v, first_scale(scene, closure), wm);
+    let g = smith_g_separable(kind, closure.alpha_u, closure.alpha_v, wo, wi);
+    let f = fresnel_closure(closure, min_(dot3(wo, wm), 1.0));
     let mut reflected = f * div(d * g, 4.0 * wo.z);
-    if (material.flags & MATERIAL_COMPENSATE) != 0 {
-        reflected += multiple_scattering(scene, material, wo.z, wi.z);
+    if (closure.flags & MATERIAL_COMPENSATE) != 0 {
+        reflected += multiple_scattering(scene, closure, wo.z, wi.z);
     }
-    spectrum_from_rgb(material.specular_color * reflected)
+    spectrum_from_rgb(closure.specular_color * reflected)
 }
 
 /// Probability of sampling what scatters more than once: its share of the light, if nothing is absorbed.
 #[inline]
-pub fn multiple_probability(scene: &SceneView, material: &Material, cos_o: f32) -> f32 {
-    if (material.flags & MATERIAL_COMPENSATE) == 0 {
+pub fn multiple_probability(scene: &SceneView, closure: &Closure, cos_o: f32) -> f32 {
+    if (closure.flags & MATERIAL_COMPENSATE) == 0 {
         return 0.0;
     }
-    clamp_(1.0 - albedo_at(scene, material.table, cos_o), 0.0, 1.0)
+    clamp_(1.0 - albedo_at(scene, closure.table, cos_o), 0.0, 1.0)
 }
 
 /// Density of `sample_rough_conductor`; its integral over the upper side is below 1 by what falls under the horizon.
 #[inline]
-pub fn pdf_rough_conductor(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> f32 {
+pub fn pdf_rough_conductor(scene: &SceneView, closure: &Closure, wo: Vec3, wi: Vec3) -> f32 {
     if !on_upper_side(wo, wi) {
         return 0.0;
     }
-    let p = multiple_probability(scene, material, wo.z);
+    let p = multiple_probability(scene, closure, wo.z);
     let wm = normalize3(wo + wi);
-    let facets = pdf_facet(first_distribution(material), material.m0, material.m0_v, wo, wm);
+    let facets = pdf_facet(closure.distribution, closure.alpha_u, closure.alpha_v, wo, wm);
     // d omega_i = 4 (V.H) d omega_h
     let single = div(facets, 4.0 * max_(dot3(wo, wm), 1.0e-7));
     p * (wi.z * INV_PI) + (1.0 - p) * single
@@ -93,22 +88,16 @@ pub fn pdf_rough_conductor(scene: &SceneView, material: &Material, wo: Vec3, wi:
 /// `wo` mirrored about a visible facet, or cosine-weighted for what scatters more than once; what falls below the horizon
 /// is dropped. `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, chooses.
 #[inline]
-pub fn sample_rough_conductor(
-    scene: &SceneView,
-    material: &Material,
-    wo: Vec3,
-    u: Vec2,
-    u_lobe: f32,
-) -> DirectionSample {
+pub fn sample_rough_conductor(scene: &SceneView, closure: &Closure, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
     if wo.z <= COS_MIN {
         return no_direction();
     }
     let mut wi = square_to_cosine_hemisphere(u);
-    if u_lobe >= multiple_probability(scene, material, wo.z) {
-        wi = reflect_about(wo, sample_facet(first_distribution(material), material.m0, material.m0_v, wo, u));
+    if u_lobe >= multiple_probability(scene, closure, wo.z) {
+        wi = reflect_about(wo, sample_facet(closure.distribution, closure.alpha_u, closure.alpha_v, wo, u));
     }
     if !on_upper_side(wo, wi) {
         return no_direction();
     }
-    make_direction(wi, pdf_rough_conductor(scene, material, wo, wi))
+    make_direction(wi, pdf_rough_conductor(scene, closure, wo, wi))
 }

@@ -7,7 +7,8 @@
 //! for each view angle, for each view azimuth; steps of the integral of value times cosine over view angles; for each of their
 //! intervals its steps over azimuths. Samples take `wo` for the light: exact as far as the table is reciprocal.
 
-use crate::layout::{Material, SceneView, load_table};
+use crate::layout::{SceneView, load_table};
+use crate::shading::closure::Closure;
 use crate::shading::lobe::{DirectionSample, make_direction, no_direction, on_upper_side};
 use crate::shading::math::{
     INV_PI, INV_TWO_PI, TWO_PI, atan2_, clamp_, cos_turns, div, max_, mix_, rcp, sin_turns, sqrt_,
@@ -61,13 +62,13 @@ pub fn tabulated_count(scene: &SceneView, index: u32) -> u32 {
 
 /// The head of the material's table.
 #[inline]
-pub fn tabulated(scene: &SceneView, material: &Material) -> Tabulated {
-    let light_angles = tabulated_count(scene, material.table);
-    let light_azimuths = tabulated_count(scene, material.table + 1);
-    let view_angles = tabulated_count(scene, material.table + 2);
-    let view_azimuths = tabulated_count(scene, material.table + 3);
-    let fold = tabulated_count(scene, material.table + 4);
-    let lights = material.table + 5;
+pub fn tabulated(scene: &SceneView, closure: &Closure) -> Tabulated {
+    let light_angles = tabulated_count(scene, closure.table);
+    let light_azimuths = tabulated_count(scene, closure.table + 1);
+    let view_angles = tabulated_count(scene, closure.table + 2);
+    let view_azimuths = tabulated_count(scene, closure.table + 3);
+    let fold = tabulated_count(scene, closure.table + 4);
+    let lights = closure.table + 5;
     let views = lights + light_angles;
     let cosines = views + view_angles;
     let slices = cosines + view_angles;
@@ -144,11 +145,11 @@ pub fn tabulated_weight(place: TabulatedPlace, corner: u32) -> f32 {
 
 /// Reflection times cosine, per steradian. Local frame; zero unless both directions are on the upper side.
 #[inline]
-pub fn eval_tabulated(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> Spectrum {
+pub fn eval_tabulated(scene: &SceneView, closure: &Closure, wo: Vec3, wi: Vec3) -> Spectrum {
     if !on_upper_side(wo, wi) {
         return spectrum_zero();
     }
-    let t = tabulated(scene, material);
+    let t = tabulated(scene, closure);
     let turns = tabulated_turns(wi);
     let light = tabulated_place(scene, t.lights, t.light_angles, t.light_azimuths, wi, turns * t.fold as f32);
     let view = tabulated_place(scene, t.views, t.view_angles, t.view_azimuths, wo, tabulated_turns(wo) - turns);
@@ -162,16 +163,16 @@ pub fn eval_tabulated(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3
             sum += value * (share * tabulated_weight(view, j));
         }
     }
-    spectrum_from_rgb((material.specular_color * sum) * wi.z)
+    spectrum_from_rgb((closure.specular_color * sum) * wi.z)
 }
 
 /// Density of `sample_tabulated`.
 #[inline]
-pub fn pdf_tabulated(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3) -> f32 {
+pub fn pdf_tabulated(scene: &SceneView, closure: &Closure, wo: Vec3, wi: Vec3) -> f32 {
     if !on_upper_side(wo, wi) {
         return 0.0;
     }
-    let t = tabulated(scene, material);
+    let t = tabulated(scene, closure);
     let turns = tabulated_turns(wo);
     let light = tabulated_place(scene, t.lights, t.light_angles, t.light_azimuths, wo, turns * t.fold as f32);
     let cell = tabulated_place(scene, t.views, t.view_angles, t.view_azimuths, wi, tabulated_turns(wi) - turns);
@@ -193,10 +194,10 @@ pub fn pdf_tabulated(scene: &SceneView, material: &Material, wo: Vec3, wi: Vec3)
 /// Cosine-weighted, or drawn from the values for light from about `wo`. `u`: 0..1 each, excluding 1. `u_lobe`: 0..1, excluding 1,
 /// chooses, also among the directions of light next to `wo`.
 #[inline]
-pub fn sample_tabulated(scene: &SceneView, material: &Material, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
+pub fn sample_tabulated(scene: &SceneView, closure: &Closure, wo: Vec3, u: Vec2, u_lobe: f32) -> DirectionSample {
     let mut wi = square_to_cosine_hemisphere(u);
     if u_lobe >= TABULATED_COSINE && wo.z > 0.0 {
-        let t = tabulated(scene, material);
+        let t = tabulated(scene, closure);
         let turns = tabulated_turns(wo);
         let light = tabulated_place(scene, t.lights, t.light_angles, t.light_azimuths, wo, turns * t.fold as f32);
         let choice = (u_lobe - TABULATED_COSINE) * TABULATED_REST;
@@ -221,5 +222,5 @@ pub fn sample_tabulated(scene: &SceneView, material: &Material, wo: Vec3, u: Vec
     if !on_upper_side(wo, wi) {
         return no_direction();
     }
-    make_direction(wi, pdf_tabulated(scene, material, wo, wi))
+    make_direction(wi, pdf_tabulated(scene, closure, wo, wi))
 }

@@ -5,14 +5,14 @@ use super::area_light::{
     area_to_solid_angle, sample_sphere_light, sample_triangle_light, solid_angle_ratio, sphere_pdf,
 };
 use super::local::emitted;
-use super::textured::material_at;
+use super::resolve::resolve_material;
 use crate::layout::{
     EMITTER_ENVIRONMENT, EMITTER_LIGHT, EMITTER_SPHERE, EMITTER_TEXTURED, Emitter, Hit, KIND_SPHERE, Ray, SceneView,
     T_INFINITE, load_instance, load_light, load_material, load_table,
 };
 use crate::shading::environment::sample_environment;
 use crate::shading::light::{LightSample, no_light, sample_light};
-use crate::shading::material::{emission_material, own_weight};
+use crate::shading::material::own_weight;
 use crate::shading::math::{dot3, rcp};
 use crate::shading::sampling::SampleKey;
 use crate::shading::slide::slide_factor;
@@ -53,8 +53,8 @@ fn textured_radiance(
         ..Hit::default()
     };
     let mut surface = surface_at(scene, &ray, &hit);
-    let material = material_at(scene, lit.wi, &hit, key, DIMENSION_LIGHT_LEAF, &mut surface);
-    spectrum_from_rgb(emitted(&surface, &material, -lit.wi) * own_weight(&material))
+    let closure = resolve_material(scene, lit.wi, &hit, key, DIMENSION_LIGHT_LEAF, &mut surface);
+    spectrum_from_rgb(emitted(&surface, &closure, -lit.wi) * own_weight(closure.flags, closure.k_t))
 }
 
 /// Light of one emitter at `surface`, divided by the probability of choosing it. `u`: 0..1 each, excluding 1. `key`: of the
@@ -99,7 +99,7 @@ pub fn pdf_emitter(scene: &SceneView, origin: Vec3, direction: Vec3, t: f32, sur
     let instance = load_instance(scene, surface.instance);
     // Without textures: what bake made the choice by.
     let material = load_material(scene, named);
-    let shown = spectrum_from_rgb(emission_material(&material) * own_weight(&material));
+    let shown = spectrum_from_rgb(material.emission * own_weight(material.flags, material.k_t));
     let density = instance.light_density * spectrum_luminance(shown);
     if surface.kind == KIND_SPHERE {
         let along = transform_vector(instance.to_object, direction);

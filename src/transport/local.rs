@@ -4,11 +4,12 @@ use super::weight::consistent;
 use super::{DITHER_LIGHT, DITHER_SURFACE, LOBE_THROUGH, Queues, add_contribution, push_path, push_shadow};
 use crate::layout::{
     Hit, INSTANCE_NO_SHADOW, Light, MATERIAL_ANISOTROPIC, MATERIAL_EMIT_ONE_SIDED, MATERIAL_ONE_SIDED,
-    MATERIAL_TRANSMISSIVE, Material, PathState, SHADOWS_OFF, SceneView, ShadowRay, load_instance, load_light,
+    MATERIAL_TRANSMISSIVE, PathState, SHADOWS_OFF, SceneView, ShadowRay, load_instance, load_light,
 };
+use crate::shading::closure::Closure;
 use crate::shading::frame::{Frame, frame_from_normal, frame_from_tangent, to_local};
 use crate::shading::light::sample_light;
-use crate::shading::material::{ambient_material, emission_material, eval_material, is_delta, own_weight, pane_tint};
+use crate::shading::material::{ambient_closure, eval_closure, is_delta, own_weight, pane_tint};
 use crate::shading::math::{dot3, normalize3};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine};
 use crate::shading::slide::slide_factor;
@@ -50,42 +51,42 @@ pub fn facing_normal(surface: &Surface, wo: Vec3) -> Vec3 {
     normal
 }
 
-/// The frame in which `material` is shaded for a viewer at `wo`: z is the normal on the viewer's side, or for models that
+/// The frame in which `closure` is shaded for a viewer at `wo`: z is the normal on the viewer's side, or for models that
 /// transmit the one that leaves the outside; x follows the texture coordinates where the model has a direction.
-pub fn shading_frame(scene: &SceneView, surface: &Surface, material: &Material, wo: Vec3) -> Frame {
+pub fn shading_frame(scene: &SceneView, surface: &Surface, closure: &Closure, wo: Vec3) -> Frame {
     let facing = facing_normal(surface, wo);
-    let inside = (material.flags & MATERIAL_TRANSMISSIVE) != 0 && dot3(surface.normal_geometric, wo) < 0.0;
+    let inside = (closure.flags & MATERIAL_TRANSMISSIVE) != 0 && dot3(surface.normal_geometric, wo) < 0.0;
     let normal = if inside { -facing } else { facing };
-    if (material.flags & MATERIAL_ANISOTROPIC) != 0 {
+    if (closure.flags & MATERIAL_ANISOTROPIC) != 0 {
         return frame_from_tangent(normal, surface_tangent(scene, surface));
     }
     frame_from_normal(normal)
 }
 
 /// True if a viewer at `wo` sees the back of a surface that reflects on its front only.
-pub fn is_hidden_back(surface: &Surface, material: &Material, wo: Vec3) -> bool {
-    (material.flags & MATERIAL_ONE_SIDED) != 0 && dot3(surface.normal_geometric, wo) < 0.0
+pub fn is_hidden_back(surface: &Surface, closure: &Closure, wo: Vec3) -> bool {
+    (closure.flags & MATERIAL_ONE_SIDED) != 0 && dot3(surface.normal_geometric, wo) < 0.0
 }
 
 /// Radiance the surface emits towards `wo`.
-pub fn emitted(surface: &Surface, material: &Material, wo: Vec3) -> Vec3 {
-    if (material.flags & MATERIAL_EMIT_ONE_SIDED) != 0 && dot3(surface.normal_geometric, wo) < 0.0 {
+pub fn emitted(surface: &Surface, closure: &Closure, wo: Vec3) -> Vec3 {
+    if (closure.flags & MATERIAL_EMIT_ONE_SIDED) != 0 && dot3(surface.normal_geometric, wo) < 0.0 {
         return Vec3::ZERO;
     }
-    emission_material(material)
+    closure.emission
 }
 
 /// What the surface adds for one light, before any shadow: throughput * eval * radiance.
 pub fn light_contribution(
     scene: &SceneView,
     weight: Spectrum,
-    material: &Material,
+    closure: &Closure,
     frame: Frame,
     wo: Vec3,
     wi: Vec3,
     radiance: Spectrum,
 ) -> Spectrum {
-    weight * eval_material(scene, material, to_local(frame, wo), to_local(frame, wi)) * radiance
+    weight * eval_closure(scene, closure, to_local(frame, wo), to_local(frame, wi)) * radiance
 }
 
 /// Adds emission, ambient and every light's share of the surface, as seen from `point.wo`.
@@ -95,25 +96,25 @@ pub fn shade_local(
     path: &PathState,
     key: SampleKey,
     point: &ShadingPoint,
-    material: &Material,
+    closure: &Closure,
     queues: &mut Queues,
 ) {
     let surface = &point.surface;
     let wo = point.wo;
-    let weight = path.throughput * (own_weight(material) * point.share);
-    let hidden = is_hidden_back(surface, material, wo);
-    let mut reflected = spectrum_from_rgb(scene.header.ambient) * ambient_material(material);
+    let weight = path.throughput * (own_weight(closure.flags, closure.k_t) * point.share);
+    let hidden = is_hidden_back(surface, closure, wo);
+    let mut reflected = spectrum_from_rgb(scene.header.ambient) * ambient_closure(closure);
     if hidden {
         reflected = spectrum_zero();
     }
-    let own = weight * (reflected + spectrum_from_rgb(emitted(surface, material, wo)));
+    let own = weight * (reflected + spectrum_from_rgb(emitted(surface, closure, wo)));
     // A mirror or a glass covers the background like anything else.
-    let alpha = path.coverage * ((1.0 - material.k_t) * point.share);
+    let alpha = path.coverage * ((1.0 - closure.k_t) * point.share);
     let dither = dither_hash(key, DITHER_SURFACE + point.dither);
     add_contribution(queues, scene.header.film_scale, path.slot, Vec4::new(own.x, own.y, own.z, alpha), dither);
 
-    if !is_delta(material) && !hidden {
-        let frame = shading_frame(scene, surface, material, wo);
+    if !is_delta(closure) && !hidden {
+        let frame = shading_frame(scene, surface, closure, wo);
         let mut shadowless = false;
         if scene.features.has_shadowless {
             shadowless = (load_instance(scene, surface.instance).flags & INSTANCE_NO_SHADOW) != 0;
@@ -124,7 +125,7 @@ pub fn shade_local(
             if light.slide != 0 {
                 lit.radiance *= slide_factor(scene, &light, lit.wi);
             }
-            let seen = light_contribution(scene, weight, material, frame, wo, lit.wi, lit.radiance);
+            let seen = light_contribution(scene, weight, closure, frame, wo, lit.wi, lit.radiance);
             if spectrum_max(seen) > 0.0 {
                 let contribution = Vec4::new(seen.x, seen.y, seen.z, 0.0);
                 let light_dither = dither_hash(key, (DITHER_LIGHT + point.dither) + index);
@@ -145,12 +146,12 @@ pub fn shade_local(
 }
 
 /// Lets the ray go on through a pane.
-pub fn shade_through(scene: &SceneView, path: &PathState, surface: &Surface, material: &Material, queues: &mut Queues) {
-    if material.k_t > 0.0 {
-        let tint = pane_tint(material);
+pub fn shade_through(scene: &SceneView, path: &PathState, surface: &Surface, closure: &Closure, queues: &mut Queues) {
+    if closure.k_t > 0.0 {
+        let tint = pane_tint(closure);
         let mut through = *path;
         through.throughput = path.throughput * tint;
-        through.coverage = path.coverage * material.k_t;
+        through.coverage = path.coverage * closure.k_t;
         through.path_id = hash_combine(path.path_id, LOBE_THROUGH);
         through.ray = spawn_through(surface, path.ray.direction, path.ray.t_max);
         if spectrum_max(through.throughput) >= scene.header.min_weight {

@@ -16,9 +16,10 @@ pub mod local;
 pub mod mis;
 pub mod nested;
 pub mod path;
+pub mod resolve;
 pub mod shade;
 pub mod shadow;
-pub mod textured;
+
 pub mod weight;
 pub mod whitted;
 

@@ -2,8 +2,9 @@
 
 use super::mis::pass_surface;
 use super::{LOBE_THROUGH, Queues, push_path};
-use crate::layout::{MODEL_ROUGH_DIELECTRIC, Material, PathState, SceneView, load_table};
-use crate::shading::interior::{interior_add, interior_remove, interior_top, medium_rank};
+use crate::layout::{MODEL_ROUGH_DIELECTRIC, PathState, SceneView, load_table};
+use crate::shading::closure::Closure;
+use crate::shading::interior::{interior_add, interior_remove, interior_top};
 use crate::shading::math::{div, dot3};
 use crate::shading::sampling::hash_combine;
 use crate::trace::spawn::spawn_through;
@@ -24,7 +25,7 @@ pub fn medium_absorption(scene: &SceneView, list: u32) -> Vec3 {
     Vec3::new(load_table(scene, at + 1), load_table(scene, at + 2), load_table(scene, at + 3))
 }
 
-/// Prepares `material` of an interface that `path` meets: its index becomes relative to what is on the outer side there.
+/// Prepares `closure` of an interface that `path` meets: its index becomes relative to what is on the outer side there.
 /// False if nothing is there, as a medium of higher rank is on both sides (or the same once more): the ray then goes on.
 /// `t`: of the hit.
 pub fn meet_interface(
@@ -32,10 +33,10 @@ pub fn meet_interface(
     path: &PathState,
     surface: &Surface,
     t: f32,
-    material: &mut Material,
+    closure: &mut Closure,
     queues: &mut Queues,
 ) -> bool {
-    let rank = medium_rank(material);
+    let rank = closure.rank;
     if rank == 0 {
         return true;
     }
@@ -52,11 +53,11 @@ pub fn meet_interface(
         return false;
     }
     if outer != 0 {
-        let mut eta = div(material.eta.x, load_table(scene, scene.header.media_table + 4 * (outer - 1)));
-        if material.model == MODEL_ROUGH_DIELECTRIC && eta > ETA_BELOW && eta < ETA_ABOVE {
+        let mut eta = div(closure.eta, load_table(scene, scene.header.media_table + 4 * (outer - 1)));
+        if closure.model == MODEL_ROUGH_DIELECTRIC && eta > ETA_BELOW && eta < ETA_ABOVE {
             eta = if eta < 1.0 { ETA_BELOW } else { ETA_ABOVE };
         }
-        material.eta = Vec3::splat(eta);
+        closure.eta = eta;
     }
     true
 }

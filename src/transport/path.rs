@@ -19,16 +19,15 @@ use super::{
     DITHER_BACKGROUND, DITHER_LIGHT, DITHER_SURFACE, LOBE_SCATTER, LOBE_THROUGH, Queues, push_path, push_shadow,
 };
 use crate::layout::{
-    EMITTER_LIGHT, Hit, INSTANCE_NO_SHADOW, MODEL_THIN_DIELECTRIC, Material, PATH_BEHIND_SHADOWLESS, PathState,
-    SHADOWS_FILTERED, SceneView, ShadowRay, T_INFINITE, load_emitter, load_instance,
+    EMITTER_LIGHT, Hit, INSTANCE_NO_SHADOW, MODEL_THIN_DIELECTRIC, PATH_BEHIND_SHADOWLESS, PathState, SHADOWS_FILTERED,
+    SceneView, ShadowRay, T_INFINITE, load_emitter, load_instance,
 };
 use crate::shading::bsdf::{SAMPLE_DELTA, SAMPLE_TRANSMIT};
+use crate::shading::closure::Closure;
 use crate::shading::environment::{background, pdf_environment};
 use crate::shading::frame::{Frame, to_local, to_world};
 use crate::shading::interior::cross_interface;
-use crate::shading::material::{
-    emission_material, eval_material, is_delta, own_weight, pane_tint, pdf_material, sample_material,
-};
+use crate::shading::material::{eval_closure, is_delta, own_weight, pane_tint, pdf_closure, sample_closure};
 use crate::shading::math::{div, rcp};
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, sample_1d, sample_2d};
 use crate::shading::spectrum::{spectrum_flush, spectrum_from_rgb, spectrum_max};
@@ -78,7 +77,7 @@ fn shade_emitter(
     path: &PathState,
     key: SampleKey,
     surface: &Surface,
-    material: &Material,
+    closure: &Closure,
     frame: Frame,
     wo: Vec3,
     queues: &mut Queues,
@@ -98,13 +97,13 @@ fn shade_emitter(
     if spectrum_max(lit.radiance) <= 0.0 || !consistent(surface, wo, lit.wi, wo_local, wi_local) {
         return;
     }
-    let reflected = path.throughput * eval_material(scene, material, wo_local, wi_local) * lit.radiance;
+    let reflected = path.throughput * eval_closure(scene, closure, wo_local, wi_local) * lit.radiance;
     if spectrum_max(reflected) <= 0.0 {
         return;
     }
     let mut weight = 1.0;
     if lit.pdf_solid_angle > 0.0 {
-        weight = power_heuristic(lit.pdf_solid_angle, pdf_material(scene, material, wo_local, wi_local));
+        weight = power_heuristic(lit.pdf_solid_angle, pdf_closure(scene, closure, wo_local, wi_local));
     }
     let contribution = Vec4::new(reflected.x, reflected.y, reflected.z, 0.0);
     let ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
@@ -124,7 +123,7 @@ fn scatter(
     path: &PathState,
     key: SampleKey,
     surface: &Surface,
-    material: &Material,
+    closure: &Closure,
     frame: Frame,
     wo: Vec3,
     queues: &mut Queues,
@@ -135,7 +134,7 @@ fn scatter(
     }
     let wo_local = to_local(frame, wo);
     let u_lobe = sample_1d(key, DIMENSION_LOBE);
-    let bsdf = sample_material(scene, material, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
+    let bsdf = sample_closure(scene, closure, wo_local, sample_2d(key, DIMENSION_BSDF), u_lobe);
     let wi = to_world(frame, bsdf.wi);
     if bsdf.pdf <= 0.0 || !consistent(surface, wo, wi, wo_local, bsdf.wi) {
         return;
@@ -148,11 +147,11 @@ fn scatter(
     next.passed = 0.0;
     next.flags = 0;
     next.pdf = if (bsdf.flags & SAMPLE_DELTA) != 0 { 0.0 } else { bsdf.pdf };
-    if (bsdf.flags & SAMPLE_TRANSMIT) != 0 && material.model != MODEL_THIN_DIELECTRIC {
+    if (bsdf.flags & SAMPLE_TRANSMIT) != 0 && closure.model != MODEL_THIN_DIELECTRIC {
         next.eta = path.eta * bsdf.eta;
-        next.absorption = if bsdf.wi.z < 0.0 { material.absorption } else { Vec3::ZERO };
+        next.absorption = if bsdf.wi.z < 0.0 { closure.absorption } else { Vec3::ZERO };
         if scene.features.has_ranks {
-            next.interior = cross_interface(path.interior, material, bsdf.wi.z < 0.0);
+            next.interior = cross_interface(path.interior, closure.rank, bsdf.wi.z < 0.0);
             next.absorption = medium_absorption(scene, next.interior);
         }
     }
@@ -171,7 +170,7 @@ fn scatter(
 }
 
 /// Shades one hit: adds what glows, samples an emitter, and lets the path go on.
-/// `key`: of the path. `named`: the surface's material, of which `material` is what is met here.
+/// `key`: of the path. `named`: the surface's material, of which `closure` is what is met here.
 #[allow(clippy::too_many_arguments, reason = "to read like its twin")]
 pub fn shade_path(
     scene: &SceneView,
@@ -180,27 +179,27 @@ pub fn shade_path(
     hit: &Hit,
     surface: &Surface,
     named: u32,
-    material: &Material,
+    closure: &Closure,
     queues: &mut Queues,
 ) {
     let mut path = *incoming;
     let direction = path.ray.direction;
     let filtered = scene.features.shadows == SHADOWS_FILTERED;
-    if scene.features.hides_emitters && path.depth == 0 && emission_material(material) != Vec3::ZERO {
+    if scene.features.hides_emitters && path.depth == 0 && closure.emission != Vec3::ZERO {
         path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
         path.ray = spawn_through(surface, direction, path.ray.t_max);
         push_path(queues, path);
         return;
     }
-    if material.k_t > 0.0 {
-        let own = own_weight(material);
-        let tint = pane_tint(material);
+    if closure.k_t > 0.0 {
+        let own = own_weight(closure.flags, closure.k_t);
+        let tint = pane_tint(closure);
         // Each side as often as it is bright.
         let share = spectrum_max(tint);
         let through = div(share, own + share);
         if sample_1d(key, DIMENSION_PANE) < through {
             path.throughput *= tint * rcp(through);
-            path.coverage *= material.k_t * rcp(through);
+            path.coverage *= closure.k_t * rcp(through);
             path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
             pass_surface(scene, surface, hit.t, filtered, &mut path);
             path.ray = spawn_through(surface, direction, path.ray.t_max);
@@ -208,11 +207,11 @@ pub fn shade_path(
             return;
         }
         path.throughput *= own * rcp(1.0 - through);
-        path.coverage *= (1.0 - material.k_t) * rcp(1.0 - through);
+        path.coverage *= (1.0 - closure.k_t) * rcp(1.0 - through);
     }
 
     let wo = -direction;
-    let own_light = spectrum_from_rgb(emitted(surface, material, wo));
+    let own_light = spectrum_from_rgb(emitted(surface, closure, wo));
     let glows = spectrum_max(own_light) > 0.0;
     if glows || path.coverage != 0.0 {
         let mut weight = 1.0;
@@ -225,12 +224,12 @@ pub fn shade_path(
         let dither = dither_hash(key, DITHER_SURFACE);
         add_limited(scene, path.slot, path.depth, seen, path.coverage, dither, queues);
     }
-    if path.depth >= scene.header.max_depth || is_hidden_back(surface, material, wo) {
+    if path.depth >= scene.header.max_depth || is_hidden_back(surface, closure, wo) {
         return;
     }
-    let frame = shading_frame(scene, surface, material, wo);
-    if scene.header.emitter_count > 0 && !is_delta(material) {
-        shade_emitter(scene, &path, key, surface, material, frame, wo, queues);
+    let frame = shading_frame(scene, surface, closure, wo);
+    if scene.header.emitter_count > 0 && !is_delta(closure) {
+        shade_emitter(scene, &path, key, surface, closure, frame, wo, queues);
     }
-    scatter(scene, &path, key, surface, material, frame, wo, queues);
+    scatter(scene, &path, key, surface, closure, frame, wo, queues);
 }

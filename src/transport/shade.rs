@@ -5,7 +5,7 @@ use super::generate::sample_key;
 use super::local::{shade_local, shade_through};
 use super::nested::meet_interface;
 use super::path::{shade_beyond, shade_escape, shade_path};
-use super::textured::material_at;
+use super::resolve::resolve_material;
 use super::whitted::shade_whitted;
 use super::{DIMENSION_LEAF, DITHER_BACKGROUND, Queues, add_aov, add_contribution};
 use crate::layout::{
@@ -13,7 +13,7 @@ use crate::layout::{
 };
 use crate::shading::dielectric::transmittance;
 use crate::shading::environment::background;
-use crate::shading::material::albedo_material;
+use crate::shading::material::albedo_closure;
 use crate::shading::sampling::dither_hash;
 use crate::shading::spectrum::spectrum_max;
 use crate::trace::surface::surface_at;
@@ -52,34 +52,34 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     }
     let mut surface = surface_at(scene, &path.ray, hit);
     let named = surface.material;
-    let mut material = material_at(scene, path.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
+    let mut closure = resolve_material(scene, path.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
     if scene.features.has_shadowless && scene.header.environment_density > 0.0 {
         shade_beyond(scene, &path, key, &surface, queues);
     }
-    if scene.features.has_ranks && !meet_interface(scene, &path, &surface, hit.t, &mut material, queues) {
+    if scene.features.has_ranks && !meet_interface(scene, &path, &surface, hit.t, &mut closure, queues) {
         return;
     }
     if scene.features.has_aovs && path.path_id == 0 {
-        let albedo = albedo_material(&material);
+        let albedo = albedo_closure(&closure);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
         add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, named);
     }
     if scene.features.integrator == INTEGRATOR_PATH {
-        shade_path(scene, &path, key, hit, &surface, named, &material, queues);
+        shade_path(scene, &path, key, hit, &surface, named, &closure, queues);
         return;
     }
     let local = scene.features.integrator == INTEGRATOR_LOCAL;
     let flags = if local { load_instance(scene, hit.instance).flags } else { 0 };
     for index in 0..shading_points(flags) {
         let mut point = shading_point(scene, &path.ray, hit, &surface, flags, index);
-        let mut material_there = material;
+        let mut closure_there = closure;
         if faceted(flags) {
-            material_there = material_at(scene, -point.wo, &point.hit, key, DIMENSION_LEAF, &mut point.surface);
+            closure_there = resolve_material(scene, -point.wo, &point.hit, key, DIMENSION_LEAF, &mut point.surface);
         }
-        shade_local(scene, &path, key, &point, &material_there, queues);
+        shade_local(scene, &path, key, &point, &closure_there, queues);
     }
-    shade_through(scene, &path, &surface, &material, queues);
+    shade_through(scene, &path, &surface, &closure, queues);
     if scene.features.integrator == INTEGRATOR_WHITTED && path.depth < scene.header.max_depth {
-        shade_whitted(scene, &path, &surface, &material, queues);
+        shade_whitted(scene, &path, &surface, &closure, queues);
     }
 }

@@ -3,7 +3,7 @@
 use super::generate::sample_key;
 use super::limit::add_light;
 use super::local::SHADOW_END;
-use super::textured::material_at;
+use super::resolve::resolve_material;
 use super::{DIMENSION_LEAF, Queues, push_shadow};
 use crate::layout::{Hit, INVALID, SHADOWS_FILTERED, SceneView, ShadowRay};
 use crate::shading::material::pane_tint;
@@ -34,9 +34,9 @@ pub fn filter_shadow(scene: &SceneView, shadow: &ShadowRay, hit: &Hit, queues: &
     // Every layer has a sequence of its own: indices of one sequence are strata of each other.
     let key = sample_key(scene, shadow.dither, 0, shadow.layer);
     let mut surface = surface_at(scene, &shadow.ray, hit);
-    let material = material_at(scene, shadow.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
+    let closure = resolve_material(scene, shadow.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
     let mut beyond = *shadow;
-    beyond.contribution = spectrum_flush(shadow.contribution * pane_tint(&material));
+    beyond.contribution = spectrum_flush(shadow.contribution * pane_tint(&closure));
     if spectrum_max(beyond.contribution) <= 0.0 {
         return;
     }

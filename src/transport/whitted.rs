@@ -3,7 +3,8 @@
 use super::local::{facing_normal, is_hidden_back};
 use super::nested::medium_absorption;
 use super::{LOBE_MIRROR, LOBE_REFRACT, Queues, push_path};
-use crate::layout::{MODEL_THIN_DIELECTRIC, Material, PathState, SceneView, T_INFINITE};
+use crate::layout::{MODEL_THIN_DIELECTRIC, PathState, SceneView, T_INFINITE};
+use crate::shading::closure::Closure;
 use crate::shading::delta::thin_reflectance;
 use crate::shading::dielectric::refract_local;
 use crate::shading::frame::{frame_from_normal, to_local, to_world};
@@ -54,31 +55,31 @@ pub fn mirror_direction(surface: &Surface, wo: Vec3) -> Vec3 {
 
 /// Follows the mirror branch of any material and both branches of a dielectric, each with its Fresnel weight.
 /// Without ranks media do not nest: a ray that leaves a dielectric is outside. Radiance is not scaled by eta^2 (Whitted's model).
-pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, material: &Material, queues: &mut Queues) {
+pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, closure: &Closure, queues: &mut Queues) {
     let wo = -path.ray.direction;
-    let refracting = is_refracting(material);
-    if !refracting && is_hidden_back(surface, material, wo) {
+    let refracting = is_refracting(closure.model);
+    if !refracting && is_hidden_back(surface, closure, wo) {
         return;
     }
     let normal = facing_normal(surface, wo);
     let entering = dot3(surface.normal_geometric, wo) >= 0.0;
-    let eta = if entering { material.eta.x } else { rcp(material.eta.x) };
+    let eta = if entering { closure.eta } else { rcp(closure.eta) };
     let frame = frame_from_normal(normal);
     let wo_local = to_local(frame, wo);
-    let thin = material.model == MODEL_THIN_DIELECTRIC;
+    let thin = closure.model == MODEL_THIN_DIELECTRIC;
     let mut reflectance = 0.0;
     let reflected = if refracting {
         reflectance =
-            if thin { thin_reflectance(wo_local.z, material.eta.x) } else { fresnel_dielectric(wo_local.z, eta) };
+            if thin { thin_reflectance(wo_local.z, closure.eta) } else { fresnel_dielectric(wo_local.z, eta) };
         Vec4::splat(reflectance)
     } else {
-        mirror_weight(material, dot3(normal, wo)) * own_weight(material)
+        mirror_weight(closure, dot3(normal, wo)) * own_weight(closure.flags, closure.k_t)
     };
     push_branch(scene, path, surface, mirror_direction(surface, wo), reflected, LOBE_MIRROR, queues);
     if !refracting {
         return;
     }
-    let refracted = spectrum_from_rgb(material.specular_color) * (1.0 - reflectance);
+    let refracted = spectrum_from_rgb(closure.specular_color) * (1.0 - reflectance);
     let mut inside = *path;
     let mut wi = path.ray.direction;
     if !thin {
@@ -87,10 +88,10 @@ pub fn shade_whitted(scene: &SceneView, path: &PathState, surface: &Surface, mat
             return;
         }
         wi = to_world(frame, refraction.wt);
-        inside.eta = if entering { material.eta.x } else { 1.0 };
-        inside.absorption = if entering { material.absorption } else { Vec3::ZERO };
+        inside.eta = if entering { closure.eta } else { 1.0 };
+        inside.absorption = if entering { closure.absorption } else { Vec3::ZERO };
         if scene.features.has_ranks {
-            inside.interior = cross_interface(path.interior, material, entering);
+            inside.interior = cross_interface(path.interior, closure.rank, entering);
             inside.absorption = medium_absorption(scene, inside.interior);
         }
     }

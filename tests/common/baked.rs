@@ -4,8 +4,9 @@
 mod common;
 
 use gonio::bake::{SceneData, bake};
-use gonio::layout::{self, SceneView};
+use gonio::layout::SceneView;
 use gonio::scene::{Geometry, Material, Table, Transform};
+use gonio::shading::closure::{Closure, closure_of};
 
 /// A scene of one sphere of the material.
 pub struct Baked(SceneData);
@@ -23,8 +24,8 @@ impl Baked {
         Self(bake(&scene).expect("a material that can be baked"))
     }
 
-    pub fn material(&self) -> layout::Material {
-        self.0.materials[0]
+    pub fn closure(&self) -> Closure {
+        closure_of(&self.view(), &self.0.materials[0])
     }
 
     pub fn view(&self) -> SceneView<'_> {

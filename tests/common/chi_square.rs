@@ -2,9 +2,10 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
 use glam::{Vec2, Vec3};
-use gonio::layout::{Material, SceneView};
+use gonio::layout::SceneView;
 use gonio::shading::bsdf::{BsdfSample, SAMPLE_DELTA};
-use gonio::shading::material::{pdf_material, sample_material};
+use gonio::shading::closure::Closure;
+use gonio::shading::material::{pdf_closure, sample_closure};
 
 /// Random numbers for tests: SplitMix64 (Steele, Lea and Flood 2014), the same on every machine.
 pub struct Random(pub u64);
@@ -188,10 +189,10 @@ fn test_cells(
     (chi_square(&observed, &expected), integral)
 }
 
-/// Draws of `sample_material` for one viewer.
+/// Draws of `sample_closure` for one viewer.
 pub struct Draws<'a> {
     view: SceneView<'a>,
-    material: Material,
+    closure: Closure,
     wo: Vec3,
     samples: Vec<BsdfSample>,
 }
@@ -205,10 +206,10 @@ pub struct Mean {
 }
 
 impl<'a> Draws<'a> {
-    pub fn new(view: SceneView<'a>, material: Material, wo: Vec3, count: usize) -> Self {
+    pub fn new(view: SceneView<'a>, closure: Closure, wo: Vec3, count: usize) -> Self {
         let mut random = Random(17);
-        let draw = |_| sample_material(&view, &material, wo, random.unit2(), random.unit());
-        Self { samples: (0..count).map(draw).collect(), view, material, wo }
+        let draw = |_| sample_closure(&view, &closure, wo, random.unit2(), random.unit());
+        Self { samples: (0..count).map(draw).collect(), view, closure, wo }
     }
 
     /// How many went into a lobe of zero width.
@@ -216,12 +217,12 @@ impl<'a> Draws<'a> {
         self.samples.iter().filter(|sample| sample.flags & SAMPLE_DELTA != 0).count()
     }
 
-    /// The draws against `pdf_material` over the sphere, those of lobes of zero width counted as dropped; and its integral.
+    /// The draws against `pdf_closure` over the sphere, those of lobes of zero width counted as dropped; and its integral.
     pub fn against_density(&self) -> (ChiSquare, f64) {
         let mut samples = self.samples.iter();
         let kept = |sample: &BsdfSample| sample.pdf > 0.0 && sample.flags & SAMPLE_DELTA == 0;
         let next = || samples.next().filter(|sample| kept(sample)).map(|sample| sample.wi);
-        let pdf = |wi| f64::from(pdf_material(&self.view, &self.material, self.wo, wi));
+        let pdf = |wi| f64::from(pdf_closure(&self.view, &self.closure, self.wo, wi));
         test_cells(Z_CELLS, self.samples.len() as u32, next, &pdf)
     }
 

@@ -7,7 +7,7 @@ use glam::Vec3;
 use gonio::scene::{
     Distribution, Fresnel, Lobe, Masking, Material, Model, Principled, Rgb, Table, TableId, WardNormalisation,
 };
-use gonio::shading::material::eval_material;
+use gonio::shading::material::eval_closure;
 
 pub const GOLD: Fresnel =
     Fresnel::Conductor { eta: Rgb::new(0.2234, 0.4283, 1.3353), k: Rgb::new(9.3735, 2.4197, 1.6321) };
@@ -148,7 +148,7 @@ fn brushed() -> Table {
     };
     let metal = Baked::new(white(rough(Distribution::TrowbridgeReitz, 0.25, 0.5)));
     let f = |light: Vec3, view: Vec3| {
-        f64::from(eval_material(&metal.view(), &metal.material(), view, light).y) / f64::from(light.z)
+        f64::from(eval_closure(&metal.view(), &metal.closure(), view, light).y) / f64::from(light.z)
     };
     grid.table(f)
 }

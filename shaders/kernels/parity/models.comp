@@ -21,63 +21,75 @@ float load_table(uint index) {
 
 #include "shading/material.glsl"
 
-Material material(uint model) {
-    // A principled material keeps shares in some of them.
-    bool share = model == MODEL_PRINCIPLED;
-    Material m;
-    m.color = vec3(0.75, 0.5, 0.1);
-    m.model = model;
-    m.specular_color = vec3(1.0, 0.9, 0.8);
-    m.exponent = share ? argument(6u) * 0.0005 : argument(6u);
-    m.k_a = 0.5;
-    m.k_d = 1.0 - argument(7u);
-    m.k_s = argument(7u);
-    m.k_r = 0.25;
-    m.eta = vec3(argument(8u), argument(8u) * 0.75, argument(8u) * 1.25);
-    m.m0 = argument(10u);
-    m.k = vec3(argument(9u), argument(9u) * 0.5, argument(9u) * 0.25) * (share ? 0.125 : 1.0);
-    m.m1 = argument(11u);
-    m.w0 = 0.625;
-    m.w1 = 0.375;
-    m.k_t = 0.0;
-    m.flags = argument_u(12u);
-    m.transmit_color = vec3(0.0);
-    m.first_texture = 0u;
-    m.texture_count = 0u;
-    m.absorption = vec3(0.0);
-    m.emission = vec3(0.0);
-    m.table = model == MODEL_TABULATED ? TABULATED_AT : 64u;
-    m.m0_v = argument(13u);
-    m.m1_v = 0.25;
-    m.k_t = 0.375;
-    m.transmit_color = vec3(0.5, 0.25, 0.75);
-    m.exponent_v = argument(14u);
-    m.extra = argument(15u);
-    return m;
+Closure make_closure(uint model) {
+    Closure c;
+    c.model = model;
+    c.flags = argument_u(12u);
+    c.color = vec3(0.75, 0.5, 0.1);
+    c.specular_color = vec3(1.0, 0.9, 0.8);
+    c.k_a = 0.5;
+    c.k_d = 1.0 - argument(7u);
+    c.k_s = argument(7u);
+    c.k_r = 0.25;
+    c.exponent = argument(6u);
+    c.exponent_v = argument(14u);
+    c.sigma = argument(15u);
+    c.distribution = (argument_u(12u) >> 16u) & 3u;
+    c.second_distribution = (argument_u(12u) >> 18u) & 3u;
+    c.alpha_u = argument(10u);
+    c.alpha_v = argument(13u);
+    c.second_alpha_u = argument(11u);
+    c.second_alpha_v = 0.25;
+    c.weight = 0.625;
+    c.second_weight = 0.375;
+    c.eta = argument(8u);
+    c.metal_eta = vec3(argument(8u), argument(8u) * 0.75, argument(8u) * 1.25);
+    c.metal_k = vec3(argument(9u), argument(9u) * 0.5, argument(9u) * 0.25);
+    c.f0 = vec3(argument(8u), argument(8u) * 0.75, argument(8u) * 1.25);
+    c.table = model == MODEL_TABULATED ? TABULATED_AT : 64u;
+    c.inner_reflectance = argument(15u);
+    c.roughness = argument(10u);
+    c.metallic = argument(15u);
+    c.anisotropic = argument(9u) * 0.125;
+    c.spec_trans = argument(9u) * 0.0625;
+    c.spec_tint = argument(9u) * 0.03125;
+    c.sheen = 0.625;
+    c.sheen_tint = 0.375;
+    c.flatness = 1.0 - argument(7u);
+    c.clearcoat = argument(7u);
+    c.clearcoat_gloss = argument(6u) * 0.0005;
+    c.blend = argument(15u);
+    c.first_part = 0u;
+    c.absorption = vec3(0.0);
+    c.rank = 0u;
+    c.emission = vec3(0.0);
+    c.k_t = 0.375;
+    c.transmit_color = vec3(0.5, 0.25, 0.75);
+    return c;
 }
 
 void main() {
     if (gl_GlobalInvocationID.x >= count) return;
     vec3 wo = argument3(0u);
     vec3 wi = argument3(3u);
-    Material m = material(function / 3u);
+    Closure c = make_closure(function / 3u);
     switch (function % 3u) {
     case 0u:
-        result4(0u, eval_material(m, wo, wi));
-        result(4u, pdf_material(m, wo, wi));
+        result4(0u, eval_closure(c, wo, wi));
+        result(4u, pdf_closure(c, wo, wi));
         break;
     case 1u:
-        BsdfSample s = sample_material(m, wo, abs(argument2(3u)), abs(argument(5u)));
+        BsdfSample s = sample_closure(c, wo, abs(argument2(3u)), abs(argument(5u)));
         result4(0u, vec4(s.wi, s.pdf));
         result3(4u, s.weight.xyz);
         result_u(7u, floatBitsToUint(s.eta) ^ s.flags);
         break;
     default:
-        result(0u, ambient_material(m).x);
-        result(1u, albedo_material(m).y + pane_tint(m).y);
-        result4(2u, mirror_weight(m, argument(5u)));
-        result_u(6u, (is_delta(m) ? 1u : 0u) | (is_refracting(m) ? 2u : 0u));
-        result(7u, emission_material(m).x + own_weight(m));
+        result(0u, ambient_closure(c).x);
+        result(1u, albedo_closure(c).y + pane_tint(c).y);
+        result4(2u, mirror_weight(c, argument(5u)));
+        result_u(6u, (is_delta(c) ? 1u : 0u) | (is_refracting(c.model) ? 2u : 0u));
+        result(7u, c.emission.x + own_weight(c.flags, c.k_t));
         break;
     }
 }

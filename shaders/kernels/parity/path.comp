@@ -90,10 +90,7 @@ void main() {
         result_u(0u, interior_add(list, argument_u(1u) + 1u));
         result_u(1u, interior_remove(list, argument_u(1u) + 1u));
         result_u(2u, interior_top(list));
-        material.model = argument_u(2u);
-        material.extra = float(argument_u(3u));
-        result_u(3u, medium_rank(material));
-        result_u(4u, cross_interface(list, material, argument_u(4u) != 0u));
+        result_u(3u, cross_interface(list, argument_u(3u), argument_u(4u) != 0u));
         break;
     }
 }

@@ -94,27 +94,31 @@ void main() {
     }
     case 11u: result3(0u, channel_value(vec4(v, argument(3u)), argument_u(4u))); break;
     case 12u: {
-        Material m;
-        m.color = vec3(0.75, 0.5, 0.1);
-        m.specular_color = vec3(1.0, 0.9, 0.8);
-        m.emission = vec3(3.0, 2.0, 1.0);
-        m.m0 = 0.25;
-        m.m1 = 0.5;
-        m.k_t = 0.25;
-        m.m0_v = 0.125;
-        m.m1_v = 0.375;
-        m.extra = 0.75;
-        m.k = vec3(0.5, 0.25, 0.125);
-        m.w0 = 0.75;
-        m.w1 = 0.875;
-        m.k_d = 0.375;
-        m.k_s = 0.625;
-        m.exponent = 1.0;
-        Material applied = apply_parameter(m, argument_u(3u), v, argument(4u));
-        result4(0u, vec4(applied.color, applied.specular_color.x));
-        result3(4u, vec3(applied.emission.y, applied.m0 + applied.m1_v,
-                (applied.k_t + applied.extra) + ((applied.k.x + applied.k.y) + applied.k.z)));
-        result(7u, ((applied.w0 + applied.w1) + (applied.k_d + applied.k_s)) + applied.exponent);
+        Closure c = no_closure();
+        c.color = vec3(0.75, 0.5, 0.1);
+        c.specular_color = vec3(1.0, 0.9, 0.8);
+        c.emission = vec3(3.0, 2.0, 1.0);
+        c.alpha_u = 0.25;
+        c.alpha_v = 0.125;
+        c.second_alpha_u = 0.5;
+        c.second_alpha_v = 0.375;
+        c.k_t = 0.25;
+        c.blend = 0.9375;
+        c.roughness = 0.1875;
+        c.metallic = 0.75;
+        c.anisotropic = 0.5;
+        c.spec_trans = 0.25;
+        c.spec_tint = 0.125;
+        c.sheen = 0.75;
+        c.sheen_tint = 0.875;
+        c.flatness = 0.375;
+        c.clearcoat = 0.625;
+        c.clearcoat_gloss = 1.0;
+        apply_parameter(c, argument_u(3u), v, argument(4u));
+        result4(0u, vec4(c.color, c.specular_color.x));
+        result3(4u, vec3(c.emission.y + c.roughness, c.alpha_u + c.second_alpha_v,
+                (c.k_t + c.blend) + ((c.anisotropic + c.spec_trans) + (c.spec_tint + c.metallic))));
+        result(7u, ((c.sheen + c.sheen_tint) + (c.flatness + c.clearcoat)) + (c.clearcoat_gloss + (c.second_alpha_u + c.alpha_v)));
         break;
     }
     }

@@ -6,11 +6,12 @@ use crate::layout::{
     Features, MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE,
     MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR, MODEL_NULL,
     MODEL_OREN_NAYAR, MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC,
-    MODEL_ROUGH_PLASTIC, MODEL_TABULATED, MODEL_THIN_DIELECTRIC, MODEL_WARD, Material, SceneHeader, SceneView,
+    MODEL_ROUGH_PLASTIC, MODEL_TABULATED, MODEL_THIN_DIELECTRIC, MODEL_WARD, SceneHeader, SceneView,
 };
+use crate::shading::closure::Closure;
 use crate::shading::material::{
-    albedo_material, ambient_material, emission_material, eval_material, is_delta, is_refracting, mirror_weight,
-    own_weight, pane_tint, pdf_material, sample_material,
+    albedo_closure, ambient_closure, eval_closure, is_delta, is_refracting, mirror_weight, own_weight, pane_tint,
+    pdf_closure, sample_closure,
 };
 use crate::shading::sampling::{hash_u32, unit_float};
 use crate::verify::inputs::Domain::{self, Below, Direction, Range};
@@ -61,51 +62,71 @@ fn tables() -> SceneView<'static> {
     SceneView::of_tables(&HEADER, &FEATURES, &TABLES)
 }
 
-fn material(i: &In, model: u32) -> Material {
-    // A principled material keeps shares in some of them.
-    let share = model == MODEL_PRINCIPLED;
-    Material {
-        color: Vec3::new(0.75, 0.5, 0.1),
+/// Where the flags' argument keeps `DISTRIBUTION_*` of the facets, and above it that of the second lobe.
+pub const DISTRIBUTION_AT: u32 = 16;
+
+fn make_closure(i: &In, model: u32) -> Closure {
+    Closure {
         model,
+        flags: i.u(12),
+        color: Vec3::new(0.75, 0.5, 0.1),
         specular_color: Vec3::new(1.0, 0.9, 0.8),
-        exponent: if share { i.f(6) * 0.0005 } else { i.f(6) },
         k_a: 0.5,
         k_d: 1.0 - i.f(7),
         k_s: i.f(7),
         k_r: 0.25,
-        eta: Vec3::new(i.f(8), i.f(8) * 0.75, i.f(8) * 1.25),
-        m0: i.f(10),
-        k: Vec3::new(i.f(9), i.f(9) * 0.5, i.f(9) * 0.25) * if share { 0.125 } else { 1.0 },
-        m1: i.f(11),
-        w0: 0.625,
-        w1: 0.375,
+        exponent: i.f(6),
+        exponent_v: i.f(14),
+        sigma: i.f(15),
+        distribution: (i.u(12) >> DISTRIBUTION_AT) & 3,
+        second_distribution: (i.u(12) >> 18) & 3,
+        alpha_u: i.f(10),
+        alpha_v: i.f(13),
+        second_alpha_u: i.f(11),
+        second_alpha_v: 0.25,
+        weight: 0.625,
+        second_weight: 0.375,
+        eta: i.f(8),
+        metal_eta: Vec3::new(i.f(8), i.f(8) * 0.75, i.f(8) * 1.25),
+        metal_k: Vec3::new(i.f(9), i.f(9) * 0.5, i.f(9) * 0.25),
+        f0: Vec3::new(i.f(8), i.f(8) * 0.75, i.f(8) * 1.25),
+        table: if model == MODEL_TABULATED { TABULATED_AT } else { TABLE_AT },
+        inner_reflectance: i.f(15),
+        roughness: i.f(10),
+        metallic: i.f(15),
+        anisotropic: i.f(9) * 0.125,
+        spec_trans: i.f(9) * 0.0625,
+        spec_tint: i.f(9) * 0.03125,
+        sheen: 0.625,
+        sheen_tint: 0.375,
+        flatness: 1.0 - i.f(7),
+        clearcoat: i.f(7),
+        clearcoat_gloss: i.f(6) * 0.0005,
+        blend: i.f(15),
+        first_part: 0,
+        absorption: Vec3::ZERO,
+        rank: 0,
+        emission: Vec3::ZERO,
         k_t: 0.375,
         transmit_color: Vec3::new(0.5, 0.25, 0.75),
-        flags: i.u(12),
-        table: if model == MODEL_TABULATED { TABULATED_AT } else { TABLE_AT },
-        m0_v: i.f(13),
-        m1_v: 0.25,
-        exponent_v: i.f(14),
-        extra: i.f(15),
-        ..Material::default()
     }
 }
 
 fn eval(i: &In, o: &mut Out, model: u32) {
-    let (scene, m) = (tables(), material(i, model));
-    o.v4(eval_material(&scene, &m, i.v3(0), i.v3(3))).f(pdf_material(&scene, &m, i.v3(0), i.v3(3)));
+    let (scene, c) = (tables(), make_closure(i, model));
+    o.v4(eval_closure(&scene, &c, i.v3(0), i.v3(3))).f(pdf_closure(&scene, &c, i.v3(0), i.v3(3)));
 }
 
 fn sample(i: &In, o: &mut Out, model: u32) {
-    let s = sample_material(&tables(), &material(i, model), i.v3(0), i.v2(3).abs(), i.f(5).abs());
+    let s = sample_closure(&tables(), &make_closure(i, model), i.v3(0), i.v2(3).abs(), i.f(5).abs());
     o.v3(s.wi).f(s.pdf).v3(s.weight.truncate()).u(s.eta.to_bits() ^ s.flags);
 }
 
 fn rest(i: &In, o: &mut Out, model: u32) {
-    let m = material(i, model);
-    let kinds = u32::from(is_delta(&m)) | u32::from(is_refracting(&m)) << 1;
-    o.f(ambient_material(&m).x).f(albedo_material(&m).y + pane_tint(&m).y).v4(mirror_weight(&m, i.f(5))).u(kinds);
-    o.f(emission_material(&m).x + own_weight(&m));
+    let c = make_closure(i, model);
+    let kinds = u32::from(is_delta(&c)) | u32::from(is_refracting(c.model)) << 1;
+    o.f(ambient_closure(&c).x).f(albedo_closure(&c).y + pane_tint(&c).y).v4(mirror_weight(&c, i.f(5))).u(kinds);
+    o.f(c.emission.x + own_weight(c.flags, c.k_t));
 }
 
 macro_rules! model {

@@ -2,12 +2,12 @@
 //! `shaders/kernels/parity/path.comp`.
 
 use super::{Family, In, Out, Twin};
-use crate::layout::{EMITTER_TRIANGLE, Emitter, Instance, KIND_MESH, Material};
+use crate::layout::{EMITTER_TRIANGLE, Emitter, Instance, KIND_MESH};
 use crate::shading::environment::{
     bilinear, equirectangular_direction, equirectangular_uv, gradient_pdf, grid_place, grid_uv, rotate_from, rotate_to,
     sample_linear,
 };
-use crate::shading::interior::{cross_interface, interior_add, interior_remove, interior_top, medium_rank};
+use crate::shading::interior::{cross_interface, interior_add, interior_remove, interior_top};
 use crate::shading::light::{LightSample, no_light};
 use crate::shading::math::{cross3, dot3, normalize3};
 use crate::trace::surface::Surface;
@@ -199,15 +199,14 @@ pub const FAMILY: Family = Family {
             },
         },
         Twin {
-            name: "interior_add interior_remove interior_top medium_rank cross_interface",
+            name: "interior_add interior_remove interior_top cross_interface",
             domains: &[Below(0), Below(4), Below(21), Below(5), Below(2)],
             run: |i, o| {
                 // Few ranks, so that those asked for are often there.
                 let list = i.u(0) & 0x0303_0303;
                 let rank = i.u(1) + 1;
                 o.u(interior_add(list, rank)).u(interior_remove(list, rank)).u(interior_top(list));
-                let material = Material { model: i.u(2), extra: i.u(3) as f32, ..Material::default() };
-                o.u(medium_rank(&material)).u(cross_interface(list, &material, i.u(4) != 0));
+                o.u(cross_interface(list, i.u(3), i.u(4) != 0));
             },
         },
     ],

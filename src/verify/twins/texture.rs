@@ -2,7 +2,8 @@
 //! `shaders/kernels/parity/texture.comp`.
 
 use super::{Family, In, Twin};
-use crate::layout::{Material, Texture};
+use crate::layout::Texture;
+use crate::shading::closure::Closure;
 use crate::shading::coordinate::{texture_uv, texture_vector};
 use crate::shading::footprint::{
     Footprint, UvGradients, cone_footprint, mapped_normal, raised_normal, texture_gradients, uv_gradients,
@@ -140,31 +141,33 @@ pub const FAMILY: Family = Family {
             name: "apply_parameter",
             domains: &[UNIT, UNIT, UNIT, Below(20), UNIT],
             run: |i, o| {
-                let material = Material {
+                let mut c = Closure {
                     color: Vec3::new(0.75, 0.5, 0.1),
                     specular_color: Vec3::new(1.0, 0.9, 0.8),
                     emission: Vec3::new(3.0, 2.0, 1.0),
-                    m0: 0.25,
-                    m1: 0.5,
+                    alpha_u: 0.25,
+                    alpha_v: 0.125,
+                    second_alpha_u: 0.5,
+                    second_alpha_v: 0.375,
                     k_t: 0.25,
-                    m0_v: 0.125,
-                    m1_v: 0.375,
-                    extra: 0.75,
-                    k: Vec3::new(0.5, 0.25, 0.125),
-                    w0: 0.75,
-                    w1: 0.875,
-                    k_d: 0.375,
-                    k_s: 0.625,
-                    exponent: 1.0,
-                    ..Material::default()
+                    blend: 0.9375,
+                    roughness: 0.1875,
+                    metallic: 0.75,
+                    anisotropic: 0.5,
+                    spec_trans: 0.25,
+                    spec_tint: 0.125,
+                    sheen: 0.75,
+                    sheen_tint: 0.875,
+                    flatness: 0.375,
+                    clearcoat: 0.625,
+                    clearcoat_gloss: 1.0,
+                    ..Closure::default()
                 };
-                let applied = apply_parameter(material, i.u(3), i.v3(0), i.f(4));
-                o.v3(applied.color)
-                    .f(applied.specular_color.x)
-                    .f(applied.emission.y)
-                    .f(applied.m0 + applied.m1_v)
-                    .f((applied.k_t + applied.extra) + ((applied.k.x + applied.k.y) + applied.k.z))
-                    .f(((applied.w0 + applied.w1) + (applied.k_d + applied.k_s)) + applied.exponent);
+                apply_parameter(&mut c, i.u(3), i.v3(0), i.f(4));
+                o.v3(c.color).f(c.specular_color.x).f(c.emission.y + c.roughness).f(c.alpha_u + c.second_alpha_v);
+                o.f((c.k_t + c.blend) + ((c.anisotropic + c.spec_trans) + (c.spec_tint + c.metallic)));
+                let shares = (c.sheen + c.sheen_tint) + (c.flatness + c.clearcoat);
+                o.f(shares + (c.clearcoat_gloss + (c.second_alpha_u + c.alpha_v)));
             },
         },
     ],

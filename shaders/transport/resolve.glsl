@@ -1,9 +1,10 @@
-// The material of a point: its record with vertex colour and textures applied.
-#ifndef TRANSPORT_TEXTURED_GLSL
-#define TRANSPORT_TEXTURED_GLSL
+// What a material is at a point: the only place that knows records, textures and vertex colours.
+#ifndef TRANSPORT_RESOLVE_GLSL
+#define TRANSPORT_RESOLVE_GLSL
 
 #include "layout/features.glsl"
 #include "layout/records.glsl"
+#include "shading/closure.glsl"
 #include "shading/coordinate.glsl"
 #include "shading/footprint.glsl"
 #include "shading/math.glsl"
@@ -14,12 +15,11 @@
 #include "trace/tangent.glsl"
 #include "transport/mod.glsl"
 
-// `bare` with its textures applied, at `surface`, found for `hit` along `direction` (unit); a normal or bump map turns
-// `surface.normal`. One loop with one place that fetches, as each place is inlined and costs compile time.
-Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface surface) {
-    Material material = bare;
+// Applies the textures of `material` to `closure`, at `surface`, found for `hit` along `direction` (unit); a normal or bump
+// map turns `surface.normal`. One loop with one place that fetches, as each place is inlined and costs compile time.
+void apply_textures(Material material, vec3 direction, Hit hit, inout Closure closure, inout Surface surface) {
     if (!HAS_TEXTURES || material.texture_count == 0u) {
-        return material;
+        return;
     }
     UvGradients gradients = gradients_at(surface, hit);
     Footprint footprint = cone_footprint(gradients, surface.normal_geometric, direction, surface.cone_width);
@@ -58,45 +58,51 @@ Material apply_textures(Material bare, vec3 direction, Hit hit, inout Surface su
             UvGradients own = texture_gradients(texture_record, gradients);
             surface.normal = mapped_normal(surface.normal, own, value, texture_record.scale);
         } else {
-            material = apply_parameter(material, texture_record.parameter, value, texture_record.scale);
+            apply_parameter(closure, texture_record.parameter, value, texture_record.scale);
         }
         if (index + 1u == count) {
             break;
         }
     }
-    return material;
 }
 
 // The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour. Of a blend it is
-// one that is none, drawn by the weights, (1 - extra) of the first and extra of the second, or by the side that is seen;
+// one that is none, drawn by the weights, (1 - `blend`) of the first and `blend` of the second, or by the side that is seen;
 // `surface.material` names it.
 // `key`: of the path, which draws with `dimension` at one surface at most.
-Material material_at(vec3 direction, Hit hit, SampleKey key, uint dimension, inout Surface surface) {
+Closure resolve_material(vec3 direction, Hit hit, SampleKey key, uint dimension, inout Surface surface) {
     Material material = load_material(surface.material);
-    float u = HAS_MODEL(MODEL_BLEND) && material.model == MODEL_BLEND ? sample_1d(key, dimension) : 0.0;
+    // Drivers leave out what the one model of a group of paths excludes.
+    if (SHADE_MODEL != INVALID && dimension == DIMENSION_LEAF) material.model = SHADE_MODEL;
+    Closure closure = closure_of(material);
+    float u = HAS_MODEL(MODEL_BLEND) && closure.model == MODEL_BLEND ? sample_1d(key, dimension) : 0.0;
     float covered = 1.0;
     for (uint level = 0u; level < MAX_LEAVES; level++) {
-        material.color *= surface.color;
-        material = apply_textures(material, direction, hit, surface);
+        closure.color *= surface.color;
+        if (HAS_MODEL(MODEL_EMISSIVE) && closure.model == MODEL_EMISSIVE) {
+            closure.emission *= surface.color;
+        }
+        apply_textures(material, direction, hit, closure, surface);
         // Where a blend has holes, what it blends has them too.
         if (HAS_MODEL(MODEL_BLEND) && covered < 1.0) {
-            material.k_t = 1.0 - covered * (1.0 - material.k_t);
+            closure.k_t = 1.0 - covered * (1.0 - closure.k_t);
         }
         // Bake lets no blend be deeper.
-        if (!HAS_MODEL(MODEL_BLEND) || material.model != MODEL_BLEND || level + 1u == MAX_LEAVES) {
+        if (!HAS_MODEL(MODEL_BLEND) || closure.model != MODEL_BLEND || level + 1u == MAX_LEAVES) {
             break;
         }
-        covered = 1.0 - material.k_t;
-        bool by_side = (material.flags & MATERIAL_BY_SIDE) != 0u;
-        float weight = clamp_(material.extra, 0.0, 1.0);
+        covered = 1.0 - closure.k_t;
+        bool by_side = (closure.flags & MATERIAL_BY_SIDE) != 0u;
+        float weight = clamp_(closure.blend, 0.0, 1.0);
         bool second = by_side ? dot3(surface.normal_geometric, direction) > 0.0 : u < weight;
         // What is left of u is as random again.
         float rest = second ? div(u, weight) : div(u - weight, 1.0 - weight);
         u = by_side ? u : rest;
-        surface.material = second ? material.table + 1u : material.table;
+        surface.material = second ? closure.first_part + 1u : closure.first_part;
         material = load_material(surface.material);
+        closure = closure_of(material);
     }
-    return material;
+    return closure;
 }
 
 #endif

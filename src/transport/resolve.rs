@@ -1,9 +1,10 @@
-//! The material of a point: its record with vertex colour and textures applied.
+//! What a material is at a point: the only place that knows records, textures and vertex colours.
 
 use crate::layout::{
-    Hit, MATERIAL_BY_SIDE, MAX_LEAVES, MODEL_BLEND, Material, PARAMETER_BUMP, PARAMETER_NORMAL, SceneView,
-    TEXTURES_MOST, load_material, load_texture,
+    Hit, MATERIAL_BY_SIDE, MAX_LEAVES, MODEL_BLEND, MODEL_EMISSIVE, Material, PARAMETER_BUMP, PARAMETER_NORMAL,
+    SceneView, TEXTURES_MOST, load_material, load_texture,
 };
+use crate::shading::closure::{Closure, closure_of};
 use crate::shading::coordinate::texture_uv;
 use crate::shading::footprint::{cone_footprint, mapped_normal, raised_normal, texture_gradients};
 use crate::shading::math::{clamp_, div, dot3, max_};
@@ -14,12 +15,18 @@ use crate::trace::surface::Surface;
 use crate::trace::tangent::gradients_at;
 use glam::{Vec2, Vec3};
 
-/// `bare` with its textures applied, at `surface`, found for `hit` along `direction` (unit); a normal or bump map turns
-/// `surface.normal`. One loop with one place that fetches, as each place is inlined and costs compile time.
-fn apply_textures(scene: &SceneView, bare: Material, direction: Vec3, hit: &Hit, surface: &mut Surface) -> Material {
-    let mut material = bare;
-    if material.texture_count == 0 {
-        return material;
+/// Applies the textures of `material` to `closure`, at `surface`, found for `hit` along `direction` (unit); a normal or bump
+/// map turns `surface.normal`. One loop with one place that fetches, as each place is inlined and costs compile time.
+fn apply_textures(
+    scene: &SceneView,
+    material: &Material,
+    direction: Vec3,
+    hit: &Hit,
+    closure: &mut Closure,
+    surface: &mut Surface,
+) {
+    if !scene.features.has_textures || material.texture_count == 0 {
+        return;
     }
     let gradients = gradients_at(scene, surface, hit);
     let footprint = cone_footprint(gradients, surface.normal_geometric, direction, surface.cone_width);
@@ -55,47 +62,51 @@ fn apply_textures(scene: &SceneView, bare: Material, direction: Vec3, hit: &Hit,
             let own = texture_gradients(&texture, gradients);
             surface.normal = mapped_normal(surface.normal, own, value, texture.scale);
         } else {
-            material = apply_parameter(material, texture.parameter, value, texture.scale);
+            apply_parameter(closure, texture.parameter, value, texture.scale);
         }
     }
-    material
 }
 
 /// The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour. Of a blend it is
-/// one that is none, drawn by the weights, (1 - extra) of the first and extra of the second, or by the side that is seen;
+/// one that is none, drawn by the weights, (1 - `blend`) of the first and `blend` of the second, or by the side that is seen;
 /// `surface.material` names it.
 /// `key`: of the path, which draws with `dimension` at one surface at most.
-pub fn material_at(
+pub fn resolve_material(
     scene: &SceneView,
     direction: Vec3,
     hit: &Hit,
     key: SampleKey,
     dimension: u32,
     surface: &mut Surface,
-) -> Material {
+) -> Closure {
     let mut material = load_material(scene, surface.material);
-    let mut u = if material.model == MODEL_BLEND { sample_1d(key, dimension) } else { 0.0 };
+    let mut closure = closure_of(scene, &material);
+    let mut u = if closure.model == MODEL_BLEND { sample_1d(key, dimension) } else { 0.0 };
     let mut covered = 1.0;
     for level in 0..MAX_LEAVES {
-        material.color *= surface.color;
-        material = apply_textures(scene, material, direction, hit, surface);
+        closure.color *= surface.color;
+        if closure.model == MODEL_EMISSIVE {
+            closure.emission *= surface.color;
+        }
+        apply_textures(scene, &material, direction, hit, &mut closure, surface);
         // Where a blend has holes, what it blends has them too.
         if covered < 1.0 {
-            material.k_t = 1.0 - covered * (1.0 - material.k_t);
+            closure.k_t = 1.0 - covered * (1.0 - closure.k_t);
         }
         // Bake lets no blend be deeper.
-        if material.model != MODEL_BLEND || level + 1 == MAX_LEAVES {
+        if closure.model != MODEL_BLEND || level + 1 == MAX_LEAVES {
             break;
         }
-        covered = 1.0 - material.k_t;
-        let by_side = (material.flags & MATERIAL_BY_SIDE) != 0;
-        let weight = clamp_(material.extra, 0.0, 1.0);
+        covered = 1.0 - closure.k_t;
+        let by_side = (closure.flags & MATERIAL_BY_SIDE) != 0;
+        let weight = clamp_(closure.blend, 0.0, 1.0);
         let second = if by_side { dot3(surface.normal_geometric, direction) > 0.0 } else { u < weight };
         // What is left of u is as random again.
         let rest = if second { div(u, weight) } else { div(u - weight, 1.0 - weight) };
         u = if by_side { u } else { rest };
-        surface.material = if second { material.table + 1 } else { material.table };
+        surface.material = if second { closure.first_part + 1 } else { closure.first_part };
         material = load_material(scene, surface.material);
+        closure = closure_of(scene, &material);
     }
-    material
+    closure
 }
