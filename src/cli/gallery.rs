@@ -109,7 +109,7 @@ fn entry_of(path: &Path, folder: &Path, flags: &SceneFlags, backend: &BackendFla
 /// All samples of the scene.
 fn film(scene: &Scene, baker: Option<&mut Baker>, backend: &BackendFlags) -> anyhow::Result<Film> {
     let frame = Rect::whole(scene.film.width, scene.film.height);
-    check_film(frame)?;
+    check_film(scene, frame)?;
     let data = bake_scene_with(scene, baker, &|| false)?;
     let film = film_of(scene, &data, frame);
     let session = team::session(backend, &data, film)?;

@@ -143,7 +143,7 @@ pub fn run(args: &ParityArgs, _quiet: bool) -> anyhow::Result<ExitCode> {
             let mut baker = sheet.is_divided().then(Baker::default);
             for scene in sheet.scenes() {
                 let (label, scene) = scene?;
-                check_film(Rect::whole(scene.film.width, scene.film.height))?;
+                check_film(&scene, Rect::whole(scene.film.width, scene.film.height))?;
                 let data = bake_scene_with(&scene, baker.as_mut(), &|| false)?;
                 let result = args.compare_scene(path, label, &scene, &data, &contenders)?;
                 agree &= result.comparisons.iter().all(|comparison| comparison.differ == 0);

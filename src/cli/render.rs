@@ -219,7 +219,6 @@ fn prepare(
     baker: Option<&mut Baker>,
     interrupt: &Interrupt,
 ) -> anyhow::Result<Prepared> {
-    let crop = crop_of(&scene, args.crop)?;
     scene.settings.aovs |= !args.aov.is_empty();
     scene.settings.transparent |= args.transparent;
     let start = Instant::now();
@@ -227,6 +226,7 @@ fn prepare(
     Ok(Prepared { scene, crop, data, bake_time: start.elapsed() })
 }
 
+    let crop = crop_of(&scene, args.crop)?;
 /// Renders one scene.
 fn develop(
     args: &RenderArgs,

@@ -2,7 +2,8 @@
 
 use super::{Usage, progress, strict};
 use crate::bake::{Baker, SceneData, bake_watched};
-use crate::film::{Film, FilmSpec, Rect};
+use crate::film::{AovSums, Film, FilmSpec, Rect};
+use crate::layout::AovPixel;
 use crate::memory;
 use crate::render::vulkan::{FetchChoice, VulkanOptions};
 use crate::scene::{Integrator, Scene, Window, load};
@@ -281,7 +282,7 @@ pub fn crop_of(scene: &Scene, crop: Option<Crop>) -> anyhow::Result<Rect> {
     };
     match whole.contains(&rect) {
         true => {
-            check_film(rect)?;
+            check_film(scene, rect)?;
             Ok(rect)
         }
         // --size may have made the frame smaller.
@@ -292,9 +293,14 @@ pub fn crop_of(scene: &Scene, crop: Option<Crop>) -> anyhow::Result<Rect> {
 /// Bytes a pixel takes: in the film, in what a device gives back, in the picture and in what is encoded of it.
 const PIXEL_BYTES: u64 = 32 + 32 + 16 + 16;
 
-/// An error if there is no memory for the film of `crop`.
-pub fn check_film(crop: Rect) -> Result<(), memory::Shortage> {
-    memory::check(&format!("a film of {} x {} pixels", crop.width, crop.height), crop.area() as u64 * PIXEL_BYTES)
+/// An error if there is no memory for the film of `crop`, with auxiliary values where the scene's settings want them.
+pub fn check_film(scene: &Scene, crop: Rect) -> Result<(), memory::Shortage> {
+    let (layers, pixel) = match scene.settings.aovs {
+        true => (" with auxiliary values", PIXEL_BYTES + AOV_BYTES),
+        false => ("", PIXEL_BYTES),
+    };
+    let what = format!("a film of {} x {} pixels{layers}", crop.width, crop.height);
+    memory::check(&what, crop.area() as u64 * pixel)
 }
 
 /// An empty film for a scene.
@@ -302,3 +308,5 @@ pub fn film_of(scene: &Scene, data: &SceneData, crop: Rect) -> Film {
     let (transparent, aovs) = (data.features.hides_background, data.features.has_aovs);
     Film::new(FilmSpec { crop, ..FilmSpec::of(scene, data.digest(), transparent, aovs) })
 }
+/// Bytes its auxiliary values take beside them, in the same places: the picture and its layers have ten numbers of them.
+const AOV_BYTES: u64 = size_of::<AovSums>() as u64 + size_of::<AovPixel>() as u64 + 10 * 4 + 2 * 10 * 4;

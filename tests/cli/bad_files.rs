@@ -207,6 +207,12 @@ fn what_takes_more_memory_than_there_is_exits_with_75() {
     folder.file("scenes/a.toml", SCENE);
     let gallery = ["render", "--gallery", "scenes", "-o", "page", "--backend", "cpu", "--size", "65535x65535"];
     refused(&folder, &gallery, 75, "a film of 65535 x 65535 pixels", "");
+    // 96 bytes a pixel alone, 360 with auxiliary values, and the program's own few tens of MiB.
+    let layered =
+        ["render", "scene.toml", "--backend", "cpu", "--size", "2048x1024", "--spp", "1", "--max-memory", "500M"];
+    folder.done(&[&layered[..], &["-o", "a.exr"]].concat());
+    let aovs = [&layered[..], &["-o", "a.exr", "--aov", "normal"]].concat();
+    refused(&folder, &aovs, 75, "a film of 2048 x 1024 pixels with auxiliary values takes 7", "--max-memory");
     let little = ["render", "scene.toml", "-o", "a.png", "--backend", "cpu", "--max-memory", "1K"];
     refused(&folder, &little, 75, "scene.toml: the file takes ", "1.0 KiB are left");
     folder.done(&["render", "scene.toml", "-o", "a.png", "--backend", "cpu", "--max-memory", "1G"]);
