@@ -5,7 +5,7 @@ use super::setup::{
     BackendFlags, BackendName, FetchName, IntegratorName, SceneFlags, bake_scene, bake_scene_with, film_of,
     thread_count,
 };
-use super::{EXIT_DIFFERS, team};
+use super::{EXIT_DIFFERS, ExitCode, drivers, team};
 use crate::bake::{Baker, SceneData};
 use crate::bench::export::export;
 use crate::bench::hierarchy::size_of_scene;
@@ -23,7 +23,6 @@ use anyhow::Context;
 use clap::{Args, ValueEnum};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Instant;
 
 /// Scenes where none is named: one of each sort, small enough for any machine.
@@ -110,6 +109,9 @@ impl What {
 pub fn run(args: &BenchArgs) -> anyhow::Result<ExitCode> {
     let baseline = args.baseline.as_deref().map(read_baseline).transpose()?;
     let contenders = args.contenders();
+    if contenders.iter().any(|contender| contender.flags.may_use_vulkan()) {
+        drivers::ready();
+    }
     let mut report = Report {
         schema: SCHEMA,
         gonio: env!("CARGO_PKG_VERSION").to_owned(),

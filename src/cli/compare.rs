@@ -1,5 +1,6 @@
 //! `gonio compare`: how far two pictures are apart.
 
+use super::{EXIT_DIFFERS, ExitCode};
 use crate::film::metrics::{Metrics, Step, compare};
 use crate::film::read::read_picture;
 use crate::film::{FilmError, OutputFile, write};
@@ -7,7 +8,6 @@ use anyhow::{Context, Result};
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// Measures how far a picture is from a reference: PNG, JPEG, WebP, HDR, EXR and gfilm in any pair.
 ///
@@ -69,7 +69,7 @@ pub fn run(args: &CompareArgs) -> Result<ExitCode> {
     let excesses = excesses(args, &metrics);
     let text = if args.json { json(&metrics, &excesses)? } else { table(&metrics, &excesses) };
     std::io::stdout().write_all(text.as_bytes()).context("cannot write standard output")?;
-    Ok(if excesses.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if excesses.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(EXIT_DIFFERS) })
 }
 
 fn open_heatmap(path: &Path) -> Result<OutputFile, FilmError> {

@@ -1,16 +1,16 @@
 //! `gonio devices`: what can be used, and why the rest cannot.
 
+use super::ExitCode;
+use super::drivers::{self, Question};
 use crate::render::RenderError;
 use crate::render::vulkan::{Context as Device, DeviceInfo, Instance};
 use crate::verify::probe::{Cache, Exactness, probe as probe_exactness};
 use crate::verify::twins::Mismatch;
-use anyhow::Context;
 use clap::Args;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
-use std::process::{Command, ExitCode, Output, Stdio};
 use std::sync::Arc;
 
 #[derive(Args, Clone, Debug)]
@@ -31,11 +31,11 @@ pub struct DevicesArgs {
 
 /// Lists the Vulkan devices and the CPU backend.
 pub fn run(args: &DevicesArgs) -> anyhow::Result<ExitCode> {
-    if let Some(question) = args.probe {
-        writeln!(io::stdout().lock(), "{}", question.map_or_else(list, probe))?;
-        return Ok(ExitCode::SUCCESS);
+    if let Some(device) = args.probe {
+        return Ok(drivers::answer(device, || device.map_or_else(list, probe))?);
     }
-    let answer = ask(ask_child)?;
+    let prove = |index| drivers::ask(&Question { device: Some(index), ..Question::default() }).answer;
+    let answer = with_exactness(drivers::ready().answer.clone(), prove);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let mut out = io::stdout().lock();
     if args.json {
@@ -90,50 +90,19 @@ fn exactness(exact: Option<bool>, inexact: Option<Mismatch>, problem: Option<Str
     json!({ "exact": exact, "inexact": inexact, "exact_problem": problem })
 }
 
-/// The list of devices, each that can be used with its exactness, from `child`, which asks one question.
-fn ask(child: impl Fn(Option<usize>) -> anyhow::Result<Output>) -> anyhow::Result<Value> {
-    let mut answer = understand(&child(None)?).unwrap_or_else(|crash| json!({ "devices": [], "problem": crash }));
+/// The list of devices, each that can be used with its exactness, which `prove` asks for.
+fn with_exactness(mut answer: Value, prove: impl Fn(usize) -> Result<Value, String>) -> Value {
     for device in answer["devices"].as_array_mut().into_iter().flatten() {
         let index = device["index"].as_u64().filter(|_| device["usable"] == true);
         let found = match index {
-            Some(index) => {
-                understand(&child(Some(index as usize))?).unwrap_or_else(|crash| exactness(None, None, Some(crash)))
-            }
+            Some(index) => prove(index as usize).unwrap_or_else(|crash| exactness(None, None, Some(crash))),
             None => exactness(None, None, None),
         };
         for (key, value) in found.as_object().into_iter().flatten() {
             device[key] = value.clone();
         }
     }
-    Ok(answer)
-}
-
-/// Asks all drivers for their devices, or about one device, in a child process.
-fn ask_child(device: Option<usize>) -> anyhow::Result<Output> {
-    let program = std::env::current_exe().context("cannot find this program's own file")?;
-    let output = Command::new(program)
-        .args(["devices", "--probe"])
-        .args(device.map(|index| index.to_string()))
-        .stdin(Stdio::null())
-        .output()
-        .context("cannot start the process that asks the Vulkan drivers")?;
-    let noise = String::from_utf8_lossy(&output.stderr);
-    for line in noise.lines() {
-        log::info!("while asking the drivers: {line}");
-    }
-    Ok(output)
-}
-
-/// A child's answer, or that it died before it could give one.
-fn understand(output: &Output) -> Result<Value, String> {
-    let answer = serde_json::from_slice(&output.stdout).ok().filter(|_| output.status.success());
-    answer.ok_or_else(|| {
-        format!(
-            "a Vulkan driver crashed the process that asked it ({}); -v shows what it said, and VK_DRIVER_FILES chooses \
-             drivers",
-            output.status
-        )
-    })
+    answer
 }
 
 /// The probe's answer as far as the table shows it.
@@ -253,45 +222,30 @@ device 1 cannot be used: Vulkan 1.1.0 only
         assert_eq!(text, expected);
     }
 
-    #[cfg(unix)]
-    fn aborted() -> Output {
-        use std::os::unix::process::ExitStatusExt;
-        Output { status: std::process::ExitStatus::from_raw(6), stdout: b"{\"devices\":[".to_vec(), stderr: Vec::new() }
-    }
-
-    #[cfg(unix)]
     #[test]
-    fn a_driver_that_aborts_is_reported_and_the_cpu_backend_is_still_listed() {
-        let text = table(&Answer::deserialize(ask(|_| Ok(aborted())).unwrap()).unwrap(), 1);
-        assert!(text.contains("the CPU backend (1 thread)"), "{text}");
-        assert!(text.contains("a Vulkan driver crashed the process that asked it (signal: 6"), "{text}");
+    fn where_no_driver_answers_the_cpu_backend_is_still_listed() {
+        let answer = json!({ "devices": [], "problem": "a Vulkan driver crashed" });
+        let text = table(&Answer::deserialize(answer).unwrap(), 1);
+        assert!(text.contains("the CPU backend (1 thread)") && text.ends_with("a Vulkan driver crashed\n"), "{text}");
     }
 
-    #[cfg(unix)]
     #[test]
     fn a_device_whose_driver_aborts_is_listed_with_its_neighbours() {
         let device = |index: usize, name: &str| {
             json!({ "index": index, "name": name, "kind": "cpu", "vulkan_version": "1.3.0", "driver": "d", "driver_version": "2",
                     "missing": [], "usable": true })
         };
-        let said =
-            |value: Value| Output { status: Default::default(), stdout: value.to_string().into(), stderr: Vec::new() };
-        let child = |question: Option<usize>| match question {
-            None => Ok(said(json!({ "devices": [device(0, "Wild"), device(1, "Tame")], "problem": null }))),
-            Some(0) => Ok(aborted()),
-            Some(_) => Ok(said(exactness(Some(true), None, None))),
+        let answer = json!({ "devices": [device(0, "Wild"), device(1, "Tame")], "problem": null });
+        let prove = |index| match index {
+            0 => Err("it crashed".to_owned()),
+            _ => Ok(exactness(Some(true), None, None)),
         };
-        let text = table(&Answer::deserialize(ask(child).unwrap()).unwrap(), 1);
+        let text = table(&Answer::deserialize(with_exactness(answer, prove)).unwrap(), 1);
         assert!(
             text.contains("\n0       Wild                        cpu   1.3.0   d 2     yes     unknown\n"),
             "{text}"
         );
         assert!(text.contains("\n1       Tame                        cpu   1.3.0   d 2     yes     yes\n"), "{text}");
-        assert!(
-            text.contains(
-                "\ndevice 0 may be exact or not: a Vulkan driver crashed the process that asked it (signal: 6"
-            ),
-            "{text}"
-        );
+        assert!(text.contains("\ndevice 0 may be exact or not: it crashed\n"), "{text}");
     }
 }

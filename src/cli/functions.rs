@@ -1,7 +1,7 @@
 //! `gonio verify --functions`: every function that exists in Rust and in GLSL, on a device.
 
-use super::Usage;
 use super::setup::{BackendFlags, BackendName};
+use super::{Usage, drivers};
 use crate::render::vulkan::{Context, DeviceChoice};
 use crate::verify::report::{Outcome, Row};
 use crate::verify::twins::{FAMILIES, compare};
@@ -19,6 +19,7 @@ pub fn run(count: u32, flags: &BackendFlags, wanted: impl Fn(&str) -> bool) -> a
         .into());
     }
     let Ok(choice) = flags.device.as_deref().unwrap_or("auto").parse::<DeviceChoice>();
+    drivers::ready();
     let mut context = Context::new(&choice, false)?;
     let mut rows = Vec::new();
     for family in FAMILIES {

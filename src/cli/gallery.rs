@@ -1,10 +1,10 @@
 //! `gonio render --gallery`: every scene of a folder as a picture, and a page that shows them all.
 
-use super::Usage;
 use super::interrupt::Interrupt;
 use super::setup::{BackendFlags, SceneFlags, bake_scene_with, check_film, film_of};
 use super::sheet::{self, Sheet};
 use super::team;
+use super::{ExitCode, Usage};
 use crate::bake::Baker;
 use crate::film::{Film, FilmError, OutputFile, Rect};
 use crate::plot::figure::Frame;
@@ -16,7 +16,6 @@ use crate::scene::{Location, Scene, SceneError};
 use crate::watch::Watch;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// Width of the page's plots, pixels: a telephone shows it without loss.
 const PLOT: u32 = 500;

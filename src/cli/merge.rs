@@ -1,5 +1,6 @@
 //! `gonio merge`: one film of several.
 
+use super::ExitCode;
 use super::output::OutputFlags;
 use crate::film::read::read_film;
 use crate::film::write::Aov;
@@ -7,7 +8,6 @@ use crate::film::{FilmError, OutputFile};
 use anyhow::{Context, Result};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// Adds films of the same picture with different samples; the result is the film of all samples at once, bit for bit.
 ///

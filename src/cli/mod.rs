@@ -4,6 +4,7 @@ pub mod bench;
 pub mod compare;
 pub mod devices;
 mod exact;
+mod drivers;
 mod fit;
 mod functions;
 mod gallery;
@@ -24,7 +25,6 @@ pub mod verify;
 use anyhow::Context;
 use clap::{Parser, Subcommand};
 use std::io::{self, Write};
-use std::process::ExitCode;
 
 /// Exit codes (README, "Exit codes").
 pub const EXIT_DIFFERS: u8 = 1;
@@ -36,6 +36,20 @@ pub const EXIT_DEVICE: u8 = 75;
 pub const EXIT_INTERRUPTED: u8 = 130;
 
 /// A ray tracer in Rust and Vulkan compute. The same scene, seed and sample count give the same bits on every device.
+/// How the program ends. `std::process::ExitCode` does not tell its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ExitCode(u8);
+
+impl ExitCode {
+    pub const SUCCESS: Self = Self(0);
+}
+
+impl From<u8> for ExitCode {
+    fn from(code: u8) -> Self {
+        Self(code)
+    }
+}
+
 #[derive(Parser)]
 #[command(name = "gonio", version, max_term_width = 100)]
 struct Cli {
@@ -82,8 +96,18 @@ Examples:
     },
 }
 
-/// Parses the command line and runs the subcommand.
-pub fn main() -> ExitCode {
+/// Runs the program.
+pub fn main() -> std::process::ExitCode {
+    let ExitCode(code) = run();
+    // A device that was given up may still be at work in threads of its driver: nothing that they use is taken from them.
+    if crate::render::vulkan::is_any_stuck() {
+        signal_hook::low_level::exit(code.into());
+    }
+    code.into()
+}
+
+/// Parses the command line and runs the subcommand; nothing is left in a buffer.
+fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(told) => return said(&told),

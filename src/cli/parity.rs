@@ -4,7 +4,7 @@ use super::setup::{
     BackendFlags, BackendName, FetchName, SceneFlags, Size, bake_scene_with, check_film, film_of, thread_count,
 };
 use super::sheet::Sheet;
-use super::{EXIT_DIFFERS, Usage, render, team};
+use super::{EXIT_DIFFERS, ExitCode, Usage, drivers, render, team};
 use crate::bake::{Baker, SceneData};
 use crate::film::{Film, Rect};
 use crate::render::session::Session;
@@ -17,7 +17,6 @@ use clap::Args;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::str::FromStr;
 
 #[derive(Args)]
@@ -276,6 +275,7 @@ impl ParityArgs {
             return (all(), Vec::new());
         }
         let Ok(choice) = self.device.as_deref().unwrap_or("auto").parse::<DeviceChoice>();
+        drivers::ready();
         let Ok(devices) = Instance::new(false).and_then(|instance| instance.devices()) else {
             return (all(), Vec::new()); // opening the device says what is wrong
         };

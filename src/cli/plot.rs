@@ -1,9 +1,9 @@
 //! `gonio plot`: pictures of models.
 
-use super::Usage;
 use super::fit::FitArgs;
 use super::growth::GrowthArgs;
 use super::setup::Size;
+use super::{ExitCode, Usage};
 use crate::film::{FilmError, OutputFile};
 use crate::plot::curves::{self, FACETS, Facets, Interface, InterfaceKind};
 use crate::plot::edge::edge_figure;
@@ -17,7 +17,6 @@ use anyhow::Context;
 use clap::{Args, Subcommand};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 #[derive(Args)]
 #[command(after_help = "\

@@ -5,7 +5,7 @@ use super::interrupt::Interrupt;
 use super::output::{OutputFlags, print_report};
 use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, bake_scene_with, crop_of, film_of};
 use super::sheet::{self, Sheet};
-use super::{Usage, progress, team};
+use super::{ExitCode, Usage, drivers, progress, team};
 use crate::bake::{BakeError, Baker, SceneData};
 use crate::film::write::{Aov, Format};
 use crate::film::{Film, OutputFile, Rect};
@@ -17,7 +17,6 @@ use anyhow::Context;
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
@@ -115,6 +114,9 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     if let Some(pixel) = args.pixel {
         if sheet.is_divided() {
             return Err(sheet.refuse("--pixel").into());
+    if args.backend.may_use_vulkan() {
+        drivers::begin();
+    }
         }
         return inspect(args, &sheet, pixel);
     }

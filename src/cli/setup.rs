@@ -1,5 +1,6 @@
 //! What render, parity and others share: from flags to a baked scene and a renderer.
 
+use super::team::CPU;
 use super::{Usage, progress, strict};
 use crate::bake::{Baker, SceneData, bake_watched};
 use crate::film::{AovSums, Film, FilmSpec, Rect};
@@ -270,6 +271,11 @@ impl BackendFlags {
             ..VulkanOptions::default()
         }
     }
+    /// Whether a driver may have to be asked.
+    pub fn may_use_vulkan(&self) -> bool {
+        self.backend != BackendName::Cpu && self.device.as_deref() != Some(CPU)
+    }
+
 }
 
 /// The crop the flag asks for, or else the scene, checked against the frame; the whole frame without either.

@@ -1,13 +1,14 @@
 //! From flags to the devices of a session: `--backend` and `--device`, which names one device, a list, or all.
 
 use super::setup::{BackendFlags, BackendName};
-use super::{Usage, exact};
+use super::{Usage, drivers, exact};
 use crate::bake::SceneData;
 use crate::film::Film;
 use crate::render::RenderError;
 use crate::render::cpu::CpuRenderer;
 use crate::render::session::{Member, Session};
 use crate::render::vulkan::{DeviceChoice, DeviceInfo, DeviceKind, Instance, VulkanRenderer};
+use serde_json::Value;
 use std::sync::OnceLock;
 
 /// What `--device` calls the CPU backend.
@@ -19,7 +20,7 @@ pub const ALL: &str = "all";
 pub fn session<'a>(flags: &BackendFlags, data: &'a SceneData, film: Film) -> anyhow::Result<Session<'a>> {
     let is_open = flags.backend == BackendName::Auto && flags.device.is_none();
     // What nobody chose is made up for when it fails.
-    let (members, reserve) = match best_gpu().filter(|_| is_open) {
+    let (members, reserve) = match is_open.then(best_gpu).flatten() {
         Some(index) => {
             let device = Some(index.to_string());
             let gpu = BackendFlags { backend: BackendName::Vulkan, device, ..flags.clone() };
@@ -34,6 +35,13 @@ pub fn session<'a>(flags: &BackendFlags, data: &'a SceneData, film: Film) -> any
 fn best_gpu() -> Option<usize> {
     static FOUND: OnceLock<Option<usize>> = OnceLock::new();
     *FOUND.get_or_init(|| {
+        // Where the drivers know of no GPU, this process needs none of them.
+        let answer = &drivers::ready().answer;
+        let is_gpu = |device: &Value| device["usable"] == true && device["kind"] != DeviceKind::Cpu.to_string();
+        if !answer["devices"].as_array().is_some_and(|devices| devices.iter().any(is_gpu)) {
+            answer["problem"].as_str().into_iter().for_each(|problem| log::info!("{problem}"));
+            return None;
+        }
         let found = Instance::new(false).and_then(|instance| instance.devices());
         let devices = found.unwrap_or_else(|error| {
             log::info!("{error}");
@@ -54,6 +62,7 @@ fn members<'a>(flags: &BackendFlags, data: &'a SceneData) -> anyhow::Result<Vec<
     if flags.backend == BackendName::Cpu {
         return Err(Usage(format!("--device {text} cannot be used with --backend cpu")).into());
     }
+    drivers::ready();
     let found = Instance::new(false).and_then(|instance| instance.devices());
     let names = match (text, &found) {
         (ALL, Ok(devices)) => all_of(devices, flags.backend),
@@ -122,6 +131,7 @@ fn member(flags: BackendFlags, data: &SceneData) -> Member<'_> {
     }
     let name = flags.device.clone().map_or_else(|| "the Vulkan device".to_owned(), |name| format!("device {name}"));
     let open = move || {
+        drivers::ready();
         let mut renderer = VulkanRenderer::new(data, flags.vulkan_options())?;
         exact::check(renderer.context_mut(), flags.require_exact)?;
         Ok(Box::new(renderer) as _)

@@ -1,7 +1,7 @@
 //! `gonio verify`: proofs, as one table.
 
 use super::setup::{BackendFlags, bake_scene, crop_of, film_of};
-use super::{EXIT_DIFFERS, Usage, functions, strict, team};
+use super::{EXIT_DIFFERS, ExitCode, Usage, functions, strict, team};
 use crate::film::read::read_picture;
 use crate::film::{Film, FilmError, Image, OutputFile, write};
 use crate::scene::{Scene, load};
@@ -14,7 +14,6 @@ use anyhow::Context;
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Instant;
 
 /// Side of a block of the documentation's pictures that is compared as one pixel: below it, filters and JPEG differ.

@@ -2,6 +2,7 @@
 
 use crate::{encode, film_of, ramp};
 use clap::{Args, FromArgMatches};
+use gonio::cli::ExitCode;
 use gonio::cli::compare::{CompareArgs, excesses, run};
 use gonio::cli::merge;
 use gonio::film::Image;
@@ -10,7 +11,6 @@ use gonio::film::read::{Picture, read_film, read_picture};
 use gonio::film::write::Format;
 use std::fs;
 use std::path::Path;
-use std::process::ExitCode;
 
 fn picture(width: u32, pixels: Vec<[f32; 4]>) -> Picture {
     let height = pixels.len() as u32 / width;

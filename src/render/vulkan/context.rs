@@ -29,6 +29,15 @@ const STAGING: u64 = 8 << 20;
 /// Timestamps one submission may take.
 const QUERIES: u32 = 1024;
 
+/// Some device of this process is stuck.
+static ANY_STUCK: AtomicBool = AtomicBool::new(false);
+
+/// Whether a device of this process was given up while it may have been at work. Threads of its driver may then be at work
+/// until the process ends, which has to end without taking down what they use.
+pub fn is_any_stuck() -> bool {
+    ANY_STUCK.load(Ordering::Relaxed)
+}
+
 /// The logical device and its memory; every object made from it keeps it alive.
 pub struct Device {
     raw: ash::Device,
@@ -102,6 +111,12 @@ impl Device {
 
     pub(super) fn allocator(&self) -> AllocatorGuard<'_> {
         AllocatorGuard(self.allocator.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// A submission was not seen to end.
+    fn give_up(&self) {
+        self.stuck.store(true, Ordering::Relaxed);
+        ANY_STUCK.store(true, Ordering::Relaxed);
     }
 
     pub(super) fn is_stuck(&self) -> bool {
@@ -308,7 +323,7 @@ impl Context {
             }
             if let Err(error) = ended {
                 // Whatever went wrong, the device may still be at work.
-                self.device.stuck.store(true, Ordering::Relaxed);
+                self.device.give_up();
                 return Err(match error {
                     vk::Result::TIMEOUT => RenderError::Lost(format!(
                         "the device was lost: {what} did not end within {} s",

@@ -1,13 +1,15 @@
 //! The Vulkan loader and instance.
 
+use super::cache::user_cache;
 use super::device::{self, DeviceInfo};
 use super::error::call_failed;
 use super::validation::{self, Messages};
 use crate::render::RenderError;
 use ash::{ext, khr, vk};
-use std::ffi::CStr;
+use std::ffi::{CStr, OsStr};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Once};
 
 /// An instance, with validation if the environment asks for it and the layer is installed.
 pub struct Instance {
@@ -16,6 +18,56 @@ pub struct Instance {
     messages: Arc<Messages>,
     /// Last, so that the loader's library outlives every call above.
     _entry: ash::Entry,
+}
+
+/// No driver is left to be used.
+static NO_DRIVERS: AtomicBool = AtomicBool::new(false);
+
+/// Instances of this process, and of those that it starts, are of the drivers of these manifests from now on; there are none
+/// if the list is empty.
+pub fn choose_drivers(manifests: &[PathBuf]) {
+    NO_DRIVERS.store(manifests.is_empty(), Ordering::Relaxed);
+    if let Ok(files) = std::env::join_paths(manifests) {
+        set_variable("VK_DRIVER_FILES", &files);
+        set_variable("VK_ICD_FILENAMES", &files); // what older loaders read
+        set_variable("VK_ADD_DRIVER_FILES", "".as_ref());
+    }
+}
+
+fn set_variable(name: &str, value: &OsStr) {
+    // SAFETY: whoever else in this process reads the environment is Rust, which takes its lock, or a Vulkan loader or driver,
+    // which no thread has called yet or calls now.
+    unsafe { std::env::set_var(name, value) };
+}
+
+/// Free bytes below which a disk counts as full: a driver's cache takes a few MiB.
+const FULL: u64 = 16 << 20;
+
+/// Turns Mesa's own cache off where its disk is full: it writes to a file in memory that the disk has no room for, which ends
+/// the process (SIGBUS).
+fn spare_a_full_disk() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let named = std::env::var_os("MESA_SHADER_CACHE_DIR").map(PathBuf::from);
+        let folder = named.or_else(|| user_cache()?.parent().map(Path::to_owned));
+        if folder.as_deref().and_then(free_bytes).is_some_and(|free| free < FULL) {
+            log::info!("the disk of the driver's cache is full: going without that cache");
+            set_variable("MESA_SHADER_CACHE_DISABLE", "true".as_ref());
+            set_variable("MESA_GLSL_CACHE_DISABLE", "true".as_ref()); // what older versions read
+        }
+    });
+}
+
+/// Bytes that may be written where `folder` is, or would be.
+#[cfg(unix)]
+fn free_bytes(folder: &Path) -> Option<u64> {
+    let found = folder.ancestors().find_map(|folder| rustix::fs::statvfs(folder).ok())?;
+    Some(found.f_bavail.saturating_mul(found.f_frsize))
+}
+
+#[cfg(not(unix))]
+fn free_bytes(_: &Path) -> Option<u64> {
+    None
 }
 
 impl Instance {
@@ -30,6 +82,10 @@ impl Instance {
 
     /// The same with the loader library at `loader`; `None` for the system's.
     pub fn with_loader(loader: Option<&Path>, validate: bool) -> Result<Arc<Instance>, RenderError> {
+        if NO_DRIVERS.load(Ordering::Relaxed) {
+            return Err(RenderError::NoDevice("no Vulkan driver of this machine answers (gonio devices)".to_owned()));
+        }
+        spare_a_full_disk();
         // SAFETY: the loader is a library made to be opened so; it is closed after everything that came from it.
         let entry = unsafe {
             match loader {

@@ -22,12 +22,12 @@ mod scene;
 mod validation;
 
 pub use cache::{user_cache, write_whole};
-pub use context::{BufferSpec, Context, Device, Submission};
+pub use context::{BufferSpec, Context, Device, Submission, is_any_stuck};
 pub use device::{
     DeviceChoice, DeviceInfo, DeviceKind, Limits, STORAGE_FETCH_STORAGE_BUFFERS, TEXEL_FETCH_STORAGE_BUFFERS,
     TEXEL_FETCH_TEXEL_BUFFERS, float_control_names,
 };
-pub use instance::Instance;
+pub use instance::{Instance, choose_drivers};
 pub use kernel::{Bound, Kernel};
 pub use memory::{Buffer, Place};
 pub use queues::compile;
