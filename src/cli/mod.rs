@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand. The only folder that prints.
 
 pub mod bench;
+mod closed;
 pub mod compare;
 pub mod devices;
 mod exact;
@@ -141,18 +142,23 @@ fn run() -> ExitCode {
             // Into memory first: the generator panics where it cannot write.
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut <Cli as clap::CommandFactory>::command(), "gonio", &mut script);
-            let written = io::stdout().write_all(&script).and_then(|()| io::stdout().flush());
+            let written = io::stdout().write_all(&script);
             written.context("cannot write standard output").map(|()| ExitCode::SUCCESS)
         }
     };
-    // What is still in standard output's buffer would be lost without a word.
-    let flushed = |code| io::stdout().flush().context("cannot write standard output").map(|()| code);
+    // What is still in standard output's buffer, or went where nothing arrives, would be lost without a word.
+    let flushed = |code| arrived().context("cannot write standard output").map(|()| code);
     result.and_then(flushed).unwrap_or_else(|error| failed(&error))
+}
+
+/// Whether what was printed is out.
+fn arrived() -> io::Result<()> {
+    io::stdout().flush().and_then(|()| closed::check())
 }
 
 /// Prints what clap has to say: help, or what is wrong with the command line.
 fn said(told: &clap::Error) -> ExitCode {
-    match told.print().and_then(|()| io::stdout().flush()) {
+    match told.print().and_then(|()| arrived()) {
         _ if told.use_stderr() => ExitCode::from(EXIT_USAGE),
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => failed(&anyhow::Error::from(error).context("cannot write standard output")),

@@ -253,6 +253,28 @@ fn help_that_cannot_be_written_is_an_error() {
     }
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_that_was_closed_is_an_error_and_costs_no_file() {
+    let folder = Folder::new();
+    let run = |args: &str, redirection: &str| {
+        let line = format!("exec '{}' {args} {redirection}", program().display());
+        let mut shell = Command::new("sh");
+        let output = shell.args(["-c", &line]).current_dir(folder.path("")).output().expect("sh starts");
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    for args in ["render scene.toml --backend cpu -o a.png", "devices", "--help", "completions bash"] {
+        let (code, stderr) = run(args, ">&-");
+        assert_eq!(code, Some(74), "{args}: {stderr}");
+        assert_eq!(stderr, "error: cannot write standard output: it is closed\n", "{args}");
+        // Whoever wants none of it opens `/dev/null`, for reading too if he likes.
+        for redirection in [">/dev/null", "1<>/dev/null"] {
+            assert_eq!(run(args, redirection), (Some(0), String::new()), "{args} {redirection}");
+        }
+    }
+    assert_eq!(folder.names(), ["a.png", "scene.toml"]);
+}
+
 #[test]
 fn completions_of_every_shell_know_the_subcommands() {
     let folder = Folder::new();
