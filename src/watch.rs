@@ -1,6 +1,7 @@
 //! Who looks on while something long is done: how far it is, how fast it goes, and whether it is to end.
 
 use std::fmt;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -11,6 +12,8 @@ pub struct Watch<'a> {
     limit: Option<Duration>,
     done: AtomicU64,
     cancelled: AtomicBool,
+    /// When it was first seen to be cancelled.
+    noticed: OnceLock<Instant>,
     asked: Option<&'a (dyn Fn() -> bool + Sync)>,
     told: Option<&'a (dyn Fn(i64) + Sync)>,
 }
@@ -23,6 +26,7 @@ impl Default for Watch<'_> {
             limit: None,
             done: AtomicU64::new(0),
             cancelled: AtomicBool::new(false),
+            noticed: OnceLock::new(),
             asked: None,
             told: None,
         }
@@ -54,7 +58,13 @@ impl<'a> Watch<'a> {
     }
 
     pub fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed) || self.asked.is_some_and(|asked| asked())
+        self.cancelled_for().is_some()
+    }
+
+    /// How long ago work was first seen to be cancelled.
+    pub fn cancelled_for(&self) -> Option<Duration> {
+        let is_cancelled = self.cancelled.load(Ordering::Relaxed) || self.asked.is_some_and(|asked| asked());
+        is_cancelled.then(|| self.noticed.get_or_init(Instant::now).elapsed())
     }
 
     /// So many more steps are done; negative where some were in vain. What a step is says the work.

@@ -1,5 +1,5 @@
-//! Ctrl-C and SIGTERM: before there is anything to save the first ends the program, later it ends the render on a whole
-//! pass; the second quits at once.
+//! Ctrl-C and SIGTERM: while there is nothing to save the first ends the program, later it ends the render on whole passes;
+//! the second quits at once.
 
 use crate::film::OutputFile;
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::{self, Thread};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How soon a signal is noticed that ends the program.
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
@@ -40,14 +40,25 @@ impl Interrupt {
         }
     }
 
-    /// Does work that makes nothing worth saving: a signal meanwhile ends the program, without the unfinished `files`.
-    pub fn expendable<T>(&self, files: &[&OutputFile], work: impl FnOnce() -> T) -> T {
+    /// Does work: `patience` after a signal the program ends, without the unfinished `files`, unless there is something `worth`
+    /// saving. Then the work is to end itself.
+    pub fn expendable<T>(
+        &self,
+        files: &[&OutputFile],
+        patience: Duration,
+        worth: impl Fn() -> bool + Sync,
+        work: impl FnOnce() -> T,
+    ) -> T {
         let temporaries: Vec<&Path> = files.iter().filter_map(|file| file.temporary()).collect();
         let done = AtomicBool::new(false);
         thread::scope(|scope| {
             let watcher = scope.spawn(|| {
+                let mut came = None;
                 while !done.load(Ordering::SeqCst) {
-                    if let Some(code) = self.exit_code() {
+                    if let Some(code) = self.exit_code()
+                        && came.get_or_insert_with(Instant::now).elapsed() >= patience
+                        && !worth()
+                    {
                         // Nobody could act on a failure here.
                         temporaries.iter().for_each(|path| drop(std::fs::remove_file(path)));
                         low_level::exit(code.into());

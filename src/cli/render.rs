@@ -75,6 +75,10 @@ pub struct RenderArgs {
     backend: BackendFlags,
 }
 
+/// How long after a signal a device may still end its first samples. One that compiles, or is slow with them, cannot be made to
+/// hurry.
+const PATIENCE: Duration = Duration::from_millis(1500);
+
 /// `A..B`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct SampleRange(std::ops::Range<u32>);
@@ -110,13 +114,13 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     if let (true, Some(folder)) = (args.gallery, &args.output) {
         return gallery::run(&args.scene, folder, &args.scene_flags, &args.backend);
     }
+    if args.backend.may_use_vulkan() {
+        drivers::begin();
+    }
     let sheet = Sheet::open(&args.scene_flags, &args.scene)?;
     if let Some(pixel) = args.pixel {
         if sheet.is_divided() {
             return Err(sheet.refuse("--pixel").into());
-    if args.backend.may_use_vulkan() {
-        drivers::begin();
-    }
         }
         return inspect(args, &sheet, pixel);
     }
@@ -143,17 +147,13 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let mut baker = sheet.is_divided().then(Baker::default);
     let mut scenes = sheet.scenes();
     loop {
-        let mut next = || {
+        let next = || {
             scenes.next().map(|scene| {
                 scene.and_then(|(label, scene)| Ok((label, prepare(args, scene, baker.as_mut(), &interrupt)?)))
             })
         };
-        let prepared = if films.is_empty() {
-            let unfinished: Vec<&OutputFile> = std::iter::once(&output).chain(&stats_file).collect();
-            interrupt.expendable(&unfinished, next)
-        } else {
-            next()
-        };
+        let unfinished: Vec<&OutputFile> = std::iter::once(&output).chain(&stats_file).collect();
+        let prepared = interrupt.expendable(&unfinished, Duration::ZERO, || !films.is_empty(), next);
         let Some(prepared) = prepared else { break };
         let (label, prepared) = match prepared {
             Err(error) if matches!(error.downcast_ref(), Some(BakeError::Aborted)) => {
@@ -162,14 +162,18 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
             }
             prepared => prepared?,
         };
-        let mut developed = develop(args, &prepared, &interrupt, !quiet && !args.no_progress)?;
-        if let Some(label) = label {
-            developed.stats["panel"] = label.into();
+        let is_worth = !films.is_empty();
+        let mut developed = develop(args, &prepared, &interrupt, (&unfinished, is_worth), !quiet && !args.no_progress)?;
+        interrupted = developed.interrupted;
+        if interrupted.is_some() && developed.film.samples().total() == 0 {
+            break;
+        }
+        if let (Some(label), Some(stats)) = (label, &mut developed.stats) {
+            stats["panel"] = label.into();
         }
         log::info!("{} in {:.2} s", label.map_or_else(|| path.display().to_string(), str::to_owned), developed.seconds);
         films.push((label.map(str::to_owned), developed.film));
-        stats.push(developed.stats);
-        interrupted = developed.interrupted;
+        stats.extend(developed.stats);
         failed = developed.error;
         if interrupted.is_some() || failed.is_some() {
             break;
@@ -199,8 +203,8 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
 /// A rendered scene.
 struct Developed {
     film: Film,
-    /// For `--stats`.
-    stats: serde_json::Value,
+    /// For `--stats`, if it is wanted.
+    stats: Option<serde_json::Value>,
     seconds: f64,
     interrupted: Option<u8>,
     error: Option<RenderError>,
@@ -222,18 +226,20 @@ fn prepare(
     interrupt: &Interrupt,
 ) -> anyhow::Result<Prepared> {
     scene.settings.aovs |= !args.aov.is_empty();
+    let crop = crop_of(&scene, args.crop)?;
     scene.settings.transparent |= args.transparent;
     let start = Instant::now();
     let data = bake_scene_with(&scene, baker, &|| interrupt.exit_code().is_some())?;
     Ok(Prepared { scene, crop, data, bake_time: start.elapsed() })
 }
 
-    let crop = crop_of(&scene, args.crop)?;
-/// Renders one scene.
+/// Renders one scene. A signal ends the program, without the unfinished files, while there is nothing worth saving: neither
+/// samples nor what the flag beside the files says.
 fn develop(
     args: &RenderArgs,
     prepared: &Prepared,
     interrupt: &Interrupt,
+    (unfinished, is_worth): (&[&OutputFile], bool),
     show_progress: bool,
 ) -> anyhow::Result<Developed> {
     let Prepared { scene, crop, data, bake_time } = prepared;
@@ -244,10 +250,14 @@ fn develop(
         (None, Some(_), None) => 0..crate::film::MAX_SAMPLES,
         (None, _, _) => 0..scene.settings.samples,
     };
-    let outcome = render_samples(&session, samples, args.time, interrupt, show_progress)?;
+    let worth = || is_worth || session.snapshot().samples().total() > 0;
+    let outcome = interrupt.expendable(unfinished, PATIENCE, worth, || {
+        render_samples(&session, samples, args.time, interrupt, show_progress)
+    })?;
     let film = session.into_film();
     report(&film, &outcome.counters);
-    let stats = stats_json(args, data, &film, &outcome, *bake_time);
+    // Costs a hash of the film.
+    let stats = args.stats.as_ref().map(|_| stats_json(args, data, &film, &outcome, *bake_time));
     let seconds = outcome.render_time.as_secs_f64();
     Ok(Developed { film, stats, seconds, interrupted: outcome.interrupted, error: outcome.error })
 }

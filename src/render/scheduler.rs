@@ -20,6 +20,8 @@ const LONG_RANGE_SECONDS: f64 = 4.0;
 const LONG_RANGE_SAMPLES: f64 = 16.0;
 /// A range is at most this many times as long as the one before.
 const GROWTH: u32 = 4;
+/// Whoever is cancelled has so long to end what it has begun; what takes longer is given up.
+const GRACE: Duration = Duration::from_secs(1);
 /// How often one that waits looks again whether it is to stop, or could help.
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
 
@@ -176,13 +178,18 @@ impl<'a> Scheduler<'a> {
         self.changed.wait_timeout(state, LOOK_AGAIN).unwrap_or_else(PoisonError::into_inner).0
     }
 
+    /// Whether work was cancelled and has had its time to end.
+    pub fn is_overdue(&self) -> bool {
+        self.watch.cancelled_for().is_some_and(|since| since >= GRACE)
+    }
+
     /// What renderer `me` does next; `None` when there is nothing more to do. Waits while others may yet fail or need help.
     pub fn next(&self, me: usize) -> Option<Task> {
         let mut state = self.lock();
         loop {
             let left = self.watch.time_left().map(|left| left.as_secs_f64());
             let is_over = left == Some(0.0) || self.watch.is_cancelled();
-            if state.broken || is_over && (state.begun || !state.running.is_empty()) {
+            if state.broken || self.is_overdue() || is_over && (state.begun || !state.running.is_empty()) {
                 return None;
             }
             if let Some(samples) = state.take(me, left.unwrap_or(f64::INFINITY)) {

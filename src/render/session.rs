@@ -126,8 +126,8 @@ impl<'a> Session<'a> {
     }
 
     /// Renders those of `samples` that the film does not hold yet, on all devices; what each of them did. Steps of `watch` are
-    /// pixels times samples. Cancelled, or at the end of its time, devices end what they have begun, and one range at least is
-    /// done. An error if every device fails; the film then holds what was finished.
+    /// pixels times samples. At the end of its time devices end what they have begun, and one range at least is done.
+    /// Cancelled, they have a second to do so, and what takes longer is given up. An error if every device fails; the film then holds what was finished.
     pub fn render(&self, samples: Range<u32>, watch: &Watch) -> Result<Vec<Share>, RenderError> {
         let members: Vec<&Mutex<Member>> = self.members.iter().collect();
         let mut shares = self.work(&members, samples.clone(), watch);
@@ -223,7 +223,7 @@ impl Worker<'_> {
     fn first(&self, renderer: &mut dyn Renderer, pass: &mut Pass, task: &Task) -> Result<bool, RenderError> {
         let job = self.job(task);
         let told = |steps| self.watch.advance(steps);
-        let asked = || task.is_overtaken();
+        let asked = || task.is_overtaken() || self.scheduler.is_overdue();
         let watch = Watch::default().asking(&asked).telling(&told);
         let start = Instant::now();
         let result = renderer.render(&job, &watch, pass);
@@ -239,7 +239,7 @@ impl Worker<'_> {
     /// Renders a range again that another is slow with. Nothing counts if that one was quicker after all.
     fn again(&self, renderer: &mut dyn Renderer, pass: &mut Pass, task: &Task) -> Result<bool, RenderError> {
         let job = self.job(task);
-        let asked = || task.is_overtaken();
+        let asked = || task.is_overtaken() || self.scheduler.is_overdue();
         let watch = Watch::default().asking(&asked);
         let result = renderer.render(&job, &watch, pass);
         if !self.scheduler.settle(&task.samples, result.is_ok()) {
