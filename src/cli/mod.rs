@@ -4,8 +4,8 @@ pub mod bench;
 mod closed;
 pub mod compare;
 pub mod devices;
-mod exact;
 mod drivers;
+mod exact;
 mod fit;
 mod functions;
 mod gallery;
@@ -36,7 +36,6 @@ pub const EXIT_IO: u8 = 74;
 pub const EXIT_DEVICE: u8 = 75;
 pub const EXIT_INTERRUPTED: u8 = 130;
 
-/// A ray tracer in Rust and Vulkan compute. The same scene, seed and sample count give the same bits on every device.
 /// How the program ends. `std::process::ExitCode` does not tell its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExitCode(u8);
@@ -51,6 +50,7 @@ impl From<u8> for ExitCode {
     }
 }
 
+/// A ray tracer in Rust and Vulkan compute. The same scene, seed and sample count give the same bits on every device.
 #[derive(Parser)]
 #[command(name = "gonio", version, max_term_width = 100)]
 struct Cli {
