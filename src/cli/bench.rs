@@ -213,6 +213,7 @@ impl BenchArgs {
             max_depth: None,
             panel: None,
             max_memory: None,
+            root: None,
             set: self.set.clone(),
         };
         let mut scene = flags.load(path)?;

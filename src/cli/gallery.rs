@@ -78,10 +78,9 @@ fn scenes_in(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
 
 /// What the page shows of the scene in `path`, whose picture goes into `folder`.
 fn entry_of(path: &Path, folder: &Path, flags: &SceneFlags, backend: &BackendFlags) -> anyhow::Result<Entry> {
-    let unreadable = |source| SceneError::Io { location: Location::file(path), source };
-    let text = std::fs::read_to_string(path).map_err(unreadable)?;
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let sheet = Sheet::open(flags, path)?;
+    let text = sheet.text().to_owned();
     let mut films = Vec::new();
     let mut baker = sheet.is_divided().then(Baker::default);
     for scene in sheet.scenes() {

@@ -11,7 +11,7 @@ use crate::scene::{Integrator, Scene, Window, load};
 use crate::watch::Watch;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// `WxH`, 1 to 65,535 each.
@@ -122,6 +122,9 @@ pub struct SceneFlags {
     /// not given. What takes more is refused (exit code 75).
     #[arg(long, value_name = "SIZE", value_parser = memory::parse_size)]
     pub max_memory: Option<u64>,
+    /// Read files of this folder only, whatever a scene calls them and wherever its links lead; for scenes of strangers.
+    #[arg(long, value_name = "FOLDER")]
+    pub root: Option<PathBuf>,
 }
 
 /// `NAME=VALUE`.
@@ -148,6 +151,11 @@ impl SceneFlags {
     /// Opens a scene (`-` is TOML on standard input) with its keys changed by the flags.
     pub fn panels(&self, path: &Path) -> anyhow::Result<load::Panels> {
         self.max_memory.into_iter().for_each(memory::set_limit);
+        if let Some(root) = &self.root {
+            let failed = |error| anyhow::Error::from(error).context(format!("--root {}", root.display()));
+            load::confine::set_root(root).map_err(failed)?;
+        }
+        load::confine::begin(path);
         let size = self.size.map(|size| format!("film.size=[{},{}]", size.width, size.height));
         let overrides = self
             .set
@@ -166,6 +174,7 @@ impl SceneFlags {
         settings.seed = self.seed.unwrap_or(settings.seed);
         settings.max_depth = self.max_depth.unwrap_or(settings.max_depth);
         settings.integrator = self.integrator.map_or(settings.integrator, Integrator::from);
+        scene.warnings.extend(load::confine::strayed());
         strict::tell(&scene.warnings)?;
         Ok(scene)
     }
@@ -262,6 +271,11 @@ pub struct BackendFlags {
 }
 
 impl BackendFlags {
+    /// Whether a driver may have to be asked.
+    pub fn may_use_vulkan(&self) -> bool {
+        self.backend != BackendName::Cpu && self.device.as_deref() != Some(CPU)
+    }
+
     /// What the flags say of a Vulkan device.
     pub fn vulkan_options(&self) -> VulkanOptions {
         VulkanOptions {
@@ -271,11 +285,6 @@ impl BackendFlags {
             ..VulkanOptions::default()
         }
     }
-    /// Whether a driver may have to be asked.
-    pub fn may_use_vulkan(&self) -> bool {
-        self.backend != BackendName::Cpu && self.device.as_deref() != Some(CPU)
-    }
-
 }
 
 /// The crop the flag asks for, or else the scene, checked against the frame; the whole frame without either.
@@ -298,6 +307,8 @@ pub fn crop_of(scene: &Scene, crop: Option<Crop>) -> anyhow::Result<Rect> {
 
 /// Bytes a pixel takes: in the film, in what a device gives back, in the picture and in what is encoded of it.
 const PIXEL_BYTES: u64 = 32 + 32 + 16 + 16;
+/// Bytes its auxiliary values take beside them, in the same places: the picture and its layers have ten numbers of them.
+const AOV_BYTES: u64 = size_of::<AovSums>() as u64 + size_of::<AovPixel>() as u64 + 10 * 4 + 2 * 10 * 4;
 
 /// An error if there is no memory for the film of `crop`, with auxiliary values where the scene's settings want them.
 pub fn check_film(scene: &Scene, crop: Rect) -> Result<(), memory::Shortage> {
@@ -314,5 +325,3 @@ pub fn film_of(scene: &Scene, data: &SceneData, crop: Rect) -> Film {
     let (transparent, aovs) = (data.features.hides_background, data.features.has_aovs);
     Film::new(FilmSpec { crop, ..FilmSpec::of(scene, data.digest(), transparent, aovs) })
 }
-/// Bytes its auxiliary values take beside them, in the same places: the picture and its layers have ten numbers of them.
-const AOV_BYTES: u64 = size_of::<AovSums>() as u64 + size_of::<AovPixel>() as u64 + 10 * 4 + 2 * 10 * 4;

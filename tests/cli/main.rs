@@ -9,6 +9,7 @@ mod panels;
 mod parity;
 mod pictures;
 mod render;
+mod root;
 mod signals;
 mod strict;
 mod support;

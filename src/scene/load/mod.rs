@@ -2,6 +2,7 @@
 
 mod bounds;
 pub mod builtin;
+pub mod confine;
 mod directional;
 pub mod gltf;
 pub mod image;
@@ -113,7 +114,7 @@ fn load_file(path: &Path) -> Result<Scene, SceneError> {
         "obj" => obj::load(path),
         "ply" => ply::load(path),
         "stl" => stl::load(path),
-        _ if path.is_dir() => {
+        _ if confine::is_dir(path) => {
             let message = "it is a folder; a scene is a file: .toml, .obj, .gltf, .glb, .ply, .stl or .xml";
             let source = std::io::Error::new(std::io::ErrorKind::IsADirectory, message);
             Err(SceneError::Io { location: Location::file(path), source })

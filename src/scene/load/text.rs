@@ -1,7 +1,8 @@
 //! What all formats share: reading a file that a scene names, and finding a place in a text.
 
+use super::confine;
 use crate::scene::{Location, SceneError};
-use std::fs::File;
+use std::fs::{File, FileType};
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -21,10 +22,12 @@ pub fn line_and_column(text: &str, offset: usize) -> (u32, u32) {
 /// The file `path`, opened, and its size in bytes. Regular files only: devices and pipes have no end, and opening one may wait
 /// for ever.
 pub fn open_file(path: &Path) -> io::Result<(File, u64)> {
-    check_kind(path)?;
-    let file = File::open(path)?;
-    let size = file.metadata()?.len();
-    Ok((file, size))
+    // Asked before and after: it may have been replaced meanwhile.
+    check_kind(confine::kind(path)?)?;
+    let file = confine::open(path)?;
+    let found = file.metadata()?;
+    check_kind(found.file_type())?;
+    Ok((file, found.len()))
 }
 
 /// The bytes of the file `path` (`open_file`), or an error that names it. Their size is claimed from the budget
@@ -46,9 +49,8 @@ pub fn read_bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
     Ok(bytes)
 }
 
-/// Refuses what is there but no regular file, without opening it.
-fn check_kind(path: &Path) -> io::Result<()> {
-    let kind = std::fs::metadata(path)?.file_type();
+/// Refuses what is there but no regular file.
+fn check_kind(kind: FileType) -> io::Result<()> {
     match () {
         _ if kind.is_file() => Ok(()),
         _ if kind.is_dir() => Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder, not a file")),

@@ -1,5 +1,6 @@
 //! Pictures that several materials use are decoded once and kept once; and files that others name.
 
+use super::confine;
 use super::image::{ColorSpace, load_texture, load_texture_for};
 use crate::picture::Purpose;
 use crate::scene::{SceneError, Texture, TextureId};
@@ -71,9 +72,9 @@ pub fn intern(textures: &mut Vec<Texture>, texture: Texture) -> TextureId {
 pub fn beside(folder: &Path, name: &str) -> PathBuf {
     let name = name.replace('\\', "/");
     let path = folder.join(&name);
-    if !path.is_file()
+    if !confine::is_file(&path)
         && let Some((_, last)) = name.rsplit_once('/')
-        && folder.join(last).is_file()
+        && confine::is_file(&folder.join(last))
     {
         return folder.join(last);
     }
@@ -82,7 +83,7 @@ pub fn beside(folder: &Path, name: &str) -> PathBuf {
 
 /// Names after a keyword: several, each of which may stand in quotation marks, or one that has spaces.
 pub fn words_or_whole(folder: &Path, text: &str) -> Vec<String> {
-    let is_one = beside(folder, text).is_file();
+    let is_one = confine::is_file(&beside(folder, text));
     if is_one || !text.contains(char::is_whitespace) {
         return if text.is_empty() { Vec::new() } else { vec![text.to_owned()] };
     }

@@ -2,6 +2,7 @@
 //! place. What elements mean is not known here.
 
 use super::upgrade;
+use crate::scene::load::confine;
 use crate::scene::load::text::{read_bytes, utf8};
 use crate::scene::load::toml::nearest;
 use crate::scene::{Location, SceneError};
@@ -179,7 +180,7 @@ impl Document {
         let relative = Path::new(name);
         let beside = self.files[self.element(node).place.file as usize].parent().unwrap_or(Path::new("")).to_owned();
         let mut places = self.folders.iter().rev().chain(std::iter::once(&beside)).map(|folder| folder.join(relative));
-        match places.find(|path| path.is_file()) {
+        match places.find(|path| confine::is_file(path)) {
             Some(path) => Ok(path),
             None => Err(SceneError::Io {
                 location: self.location_of(node),
@@ -405,7 +406,7 @@ impl Loader {
         let mut places = std::iter::once(beside)
             .chain(document.folders.iter().rev().map(PathBuf::as_path))
             .map(|folder| folder.join(value));
-        let Some(folder) = places.find(|folder| folder.is_dir()) else {
+        let Some(folder) = places.find(|folder| confine::is_dir(folder)) else {
             return Err(document.bad_value(node, "value", format!("there is no folder {value:?}")));
         };
         self.document.folders.push(folder);
