@@ -232,6 +232,18 @@ fn being_stopped_leaves_whole_ranges_without_a_gap() {
 }
 
 #[test]
+fn being_stopped_gives_up_a_range_that_takes_long() {
+    let (scene, data) = scene();
+    let session = Session::new(scenes::film(&scene, &data), vec![flawed(&data, Duration::from_secs(20), None)]);
+    let (start, watch) = (Instant::now(), Watch::default());
+    watch.cancel();
+    let shares = session.render(0..4, &watch).unwrap();
+    // It has a second to end.
+    assert!((1.0..5.0).contains(&start.elapsed().as_secs_f64()), "{:?}", start.elapsed());
+    assert_eq!((shares[0].samples, session.into_film().samples().total()), (0, 0));
+}
+
+#[test]
 fn a_time_limit_of_nothing_still_gives_one_range_each_at_most() {
     let (scene, data) = scene();
     let session = Session::new(scenes::film(&scene, &data), vec![sound(&data), sound(&data)]);

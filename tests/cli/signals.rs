@@ -123,3 +123,37 @@ fn sigterm_saves_the_picture_so_far_and_exits_with_143() {
     assert!(picture.image.pixels.iter().any(|pixel| pixel[0] > 0.0));
     assert_eq!(folder.names(), ["a.png", "scene.toml"]);
 }
+
+/// Interrupts a render of 16 million pixels in the middle of its first samples.
+fn ctrl_c_does_not_wait_for_the_first_samples(device: &str) {
+    let folder = Folder::new();
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cornell.toml");
+    for fetch in ["texel", "storage"] {
+        let args = [scene, "--size", "4096x4096", "--device", device, "--fetch", fetch, "-o", "a.png"];
+        let mut render = Running::until(&folder, "rendering on ", &args);
+        // Also while a device still compiles.
+        std::thread::sleep(Duration::from_millis(if fetch == "texel" { 200 } else { 3000 }));
+        let sent = Instant::now();
+        render.signal("-INT");
+        assert_eq!(render.ends().code(), Some(130));
+        // Two seconds on a machine that does nothing else, as tests do not have it.
+        assert!(sent.elapsed() < Duration::from_secs(5), "{device}, {fetch}: {:?}", sent.elapsed());
+        assert_eq!(folder.names(), ["scene.toml"]);
+    }
+}
+
+#[test]
+fn ctrl_c_does_not_wait_for_the_cpu() {
+    ctrl_c_does_not_wait_for_the_first_samples("cpu");
+}
+
+#[test]
+fn ctrl_c_does_not_wait_for_a_software_device() {
+    let is_there =
+        |choice: &str| super::support::ended(Folder::new().command(&["devices"]).arg("--json")).text().contains(choice);
+    if is_there("\"kind\": \"cpu\"") {
+        ctrl_c_does_not_wait_for_the_first_samples("software");
+    } else {
+        println!("SKIPPED: no software device");
+    }
+}
