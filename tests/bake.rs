@@ -252,6 +252,18 @@ fn what_cannot_be_hit_is_dropped_with_one_warning_and_keeps_its_number() {
 }
 
 #[test]
+fn triangles_that_many_meshes_drop_are_told_in_one_line() {
+    let flat = |name: &str, count: usize| Mesh {
+        name: name.into(),
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        triangles: [vec![[0, 1, 2]], vec![[0, 1, 1]; count]].concat(),
+        ..Mesh::default()
+    };
+    let data = bake(&scene_of(vec![flat("a", 2), flat("good", 0), flat("b", 3)])).expect("bakes");
+    assert_eq!(data.warnings, ["2 meshes: dropped triangles: 5 without area"]);
+}
+
+#[test]
 fn instances_share_what_they_show() {
     let mut scene = scene_of(vec![globe(6)]);
     let alone = bake(&scene).expect("bakes");

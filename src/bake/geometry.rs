@@ -26,9 +26,35 @@ pub struct BakedMesh {
     /// Coordinates are stored divided by this power of two, so that the largest is in 1..2 and the strict arithmetic of
     /// `trace` works far from overflow and underflow at any scale. Instances multiply it back, exactly.
     pub unit: f64,
-    pub warning: Option<String>,
+    /// Its name, and its triangles that were dropped.
+    pub name: String,
+    pub dropped: Dropped,
     /// Seconds that all but the hierarchy took.
     pub geometry_s: f64,
+}
+
+/// Triangles that nothing can hit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Dropped {
+    pub not_finite: usize,
+    pub flat: usize,
+}
+
+/// One warning for all `meshes`, if triangles of any were dropped.
+pub fn warn_dropped<'a>(meshes: impl Iterator<Item = &'a BakedMesh>) -> Option<String> {
+    let with: Vec<&BakedMesh> = meshes.filter(|mesh| mesh.dropped != Dropped::default()).collect();
+    let sum = |of: fn(&Dropped) -> usize| with.iter().map(|mesh| of(&mesh.dropped)).sum::<usize>();
+    let counted = [
+        (sum(|dropped| dropped.not_finite), "with coordinates that are not finite"),
+        (sum(|dropped| dropped.flat), "without area"),
+    ];
+    let told = counted.iter().filter(|(count, _)| *count > 0).map(|(count, reason)| format!("{count} {reason}"));
+    let told = told.collect::<Vec<_>>().join(" and ");
+    match &with[..] {
+        [] => None,
+        [mesh] => Some(format!("mesh \"{}\": dropped triangles: {told}", mesh.name)),
+        meshes => Some(format!("{} meshes: dropped triangles: {told}", meshes.len())),
+    }
 }
 
 impl BakedMesh {
@@ -39,13 +65,13 @@ impl BakedMesh {
 }
 
 /// Bakes one mesh. `default_material`: of faces that name none. Triangles with corners that are not numbers or without
-/// area are dropped and counted in `warning`.
+/// area are dropped and counted.
 pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId, watch: &Watch) -> Result<BakedMesh, BakeError> {
     check(watch)?;
     let start = Instant::now();
     let finite = |corners: &[u32; 3]| corners.iter().all(|&i| mesh.positions[i as usize].is_finite());
     let unit = mesh.unit();
-    let mut baked = BakedMesh { unit, ..BakedMesh::default() };
+    let mut baked = BakedMesh { unit, name: mesh.name.clone(), ..BakedMesh::default() };
     let positions: Vec<Vec3> = mesh.positions.par_iter().map(|&p| scaled(p, unit)).collect();
     let corners = |primitive: u32| mesh.triangles[primitive as usize].map(|i| positions[i as usize]);
     let state = |primitive: u32| match face_normal(corners(primitive)) {
@@ -63,10 +89,7 @@ pub fn bake_mesh(mesh: &Mesh, default_material: MaterialId, watch: &Watch) -> Re
     if dropped > 0 {
         items.retain(|item| item.first_index != INVALID);
         let not_finite = numbers.filter(|&primitive| state(primitive) == State::NotFinite).count();
-        let counted = [(not_finite, "with coordinates that are not finite"), (dropped - not_finite, "without area")];
-        let told = counted.iter().filter(|(count, _)| *count > 0).map(|(count, reason)| format!("{count} {reason}"));
-        let told = told.collect::<Vec<_>>().join(" and ");
-        baked.warning = Some(format!("mesh \"{}\": dropped triangles: {told}", mesh.name));
+        baked.dropped = Dropped { not_finite, flat: dropped - not_finite };
     }
     let before = start.elapsed().as_secs_f64();
     // The hierarchy before all that stays: building it takes the most memory.

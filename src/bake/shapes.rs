@@ -3,7 +3,7 @@
 //! They depend on meshes and transforms alone, so scenes that differ in anything else share them (`Baker`).
 
 use super::bvh::{Bounds, Item, TOP_LEAF, Tree, item};
-use super::geometry::{BakedMesh, bake_mesh};
+use super::geometry::{BakedMesh, bake_mesh, warn_dropped};
 use super::instance::{place, top_margin};
 use super::scene::check_count;
 use super::{BakeError, BakeTimes};
@@ -166,10 +166,10 @@ fn place_objects(scene: &Scene, meshes: &mut [Option<BakedMesh>], shapes: &mut S
     let vertices = meshes.iter().flatten().map(|mesh| mesh.vertices.len()).sum();
     check_count("vertices", vertices)?;
     check_count("faces", faces)?;
+    shapes.warnings.extend(warn_dropped(meshes.iter().flatten()));
     let mut first_face = vec![0u32; meshes.len()];
     for (id, mesh) in meshes.iter_mut().enumerate() {
         let Some(mesh) = mesh else { continue };
-        shapes.warnings.extend(mesh.warning.clone());
         first_face[id] = shapes.faces.len() as u32;
         let base = shapes.vertices.len() as u32;
         if base > 0 {
