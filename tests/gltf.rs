@@ -5,7 +5,7 @@ mod assets;
 
 use assets::asset;
 use glam::{DVec3, Vec2, Vec3};
-use gonio::scene::load::{gltf, load};
+use gonio::scene::load::{Controls, gltf, load, staging};
 use gonio::scene::{
     Channel, Geometry, Material, Model, Parameter, Scene, SceneError, TextureBinding, TextureData, Transparency, Wrap,
 };
@@ -65,7 +65,10 @@ fn every_gltf_of_the_assets_loads() {
         for file in files {
             let scene = load(&file, &[]).unwrap_or_else(|e| panic!("{e}"));
             check_scene(&scene);
-            assert!(scene.camera.eye != scene.camera.target && !scene.lights.is_empty(), "staged");
+            let is_lit = !scene.lights.is_empty()
+                || scene.background.shines()
+                || scene.notes.iter().any(|n| n.contains("glows"));
+            assert!(scene.camera.eye != scene.camera.target && is_lit, "staged: {}", scene.name);
             println!("{}: {} objects, {:?}", scene.name, scene.objects.len(), scene.warnings);
         }
     }
@@ -226,7 +229,7 @@ fn gltf_material_becomes_our_nearest_model() {
 }
 
 #[test]
-fn gltf_lights_are_metered_and_cameras_kept() {
+fn gltf_lights_keep_their_units_and_cameras_are_kept() {
     let scene = triangle_gltf(|t| {
         t.replace(r#"{"mesh": 0}"#, r#"{"mesh": 0, "children": [1, 2]}, {"camera": 0, "translation": [0, 0, 5]},
             {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [0, 0, 9]}"#)
@@ -238,16 +241,20 @@ fn gltf_lights_are_metered_and_cameras_kept() {
     assert!(scene.camera.target.z < 5.0 && scene.camera.target.x == 0.0);
     assert_eq!(scene.film.width, 2 * scene.film.height);
     assert_eq!(scene.objects.len(), 1, "no ground where there is a camera");
-    // 54,351 cd / 683 over 9^2 m^2 is 0.98 W/m^2, a well lit scene: nothing is scaled.
+    // 54,351 cd / 683 over 9^2 m^2 is 0.98 W/m^2, a well lit scene.
     assert_eq!(scene.lights.len(), 1);
     assert!((scene.lights[0].intensity.x - 79.577).abs() < 0.01, "{}", scene.lights[0].intensity);
-    let dark = triangle_gltf(|t| {
+    let mut dark = triangle_gltf(|t| {
         t.replace(r#"{"mesh": 0}"#, r#"{"mesh": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}"#)
             .replace(r#""scene": 0,"#, r#""scene": 0, "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 3}]}},"#)
     })
     .expect("valid");
-    assert!((dark.lights[0].intensity.x / std::f32::consts::PI - 0.8).abs() < 1e-3, "{}", dark.lights[0].intensity);
-    assert!(dark.warnings.iter().any(|w| w.contains("lights are scaled")), "{:?}", dark.warnings);
+    staging::prepare(&mut dark);
+    staging::stage(&mut dark, &Controls::default()).expect("nothing is read");
+    // 3 lux are 0.0044 W/m^2: the film is exposed for them, and they stay what they are.
+    assert!((dark.lights[0].intensity.x - 3.0 / 683.0).abs() < 1e-6, "{}", dark.lights[0].intensity);
+    assert!(dark.metered && dark.film.unit_exponent < -6, "{}", dark.film.unit_exponent);
+    assert!(dark.warnings.is_empty() && dark.notes.iter().any(|n| n.contains("own light alone")), "{:?}", dark.notes);
 }
 
 #[test]

@@ -6,10 +6,10 @@ mod assets;
 use assets::asset;
 use glam::{DVec3, Vec2, Vec3};
 use gonio::scene::load::image::{ColorSpace, load_texture, texture_from_bytes};
-use gonio::scene::load::{ply, staging};
+use gonio::scene::load::{Controls, ply, staging};
 use gonio::scene::{
-    Background, Camera, Geometry, Light, LightKind, Mesh, MeshId, Object, Projection, Rgb, Scene, TextureData,
-    Transform, shape,
+    Background, Camera, Geometry, Integrator, Light, LightKind, Material, Mesh, MeshId, Object, Projection, Rgb, Scene,
+    TextureData, Transform, shape,
 };
 use std::path::Path;
 
@@ -178,6 +178,10 @@ fn sixteen_bit_srgb_is_decoded_and_linear_data_is_not() {
 
 /// `mesh`, staged.
 fn staged(mesh: Mesh, transform: Transform) -> Scene {
+    staged_as(mesh, transform, &Controls::default())
+}
+
+fn staged_as(mesh: Mesh, transform: Transform, controls: &Controls) -> Scene {
     let mut scene = staging::bare_scene(Path::new("bare.obj"));
     scene.materials.push(gonio::scene::Material::grey("grey"));
     scene.objects.push(Object {
@@ -189,7 +193,7 @@ fn staged(mesh: Mesh, transform: Transform) -> Scene {
         shading: None,
     });
     scene.meshes.push(mesh);
-    staging::stage(&mut scene);
+    staging::stage(&mut scene, controls).expect("nothing is read");
     scene
 }
 
@@ -232,16 +236,22 @@ fn any_model_fills_the_frame_whatever_its_size_place_and_shape() {
                 let scene = staged(mesh, scale.then(Transform::translate(Vec3::new(offset, -offset, offset) * size)));
                 let reach = largest_on_film(&scene);
                 assert!((0.5..0.95).contains(&reach), "{name} of size {size} at {offset}: {reach}");
-                assert!(scene.lights.len() == 2 && scene.ambient != Rgb::ZERO);
-                assert!(scene.lights.iter().all(|l| matches!(l.kind, LightKind::Directional { .. })));
+                assert!(scene.lights.is_empty() && matches!(scene.background, Background::Image(_)), "in a studio");
             }
         }
     }
 }
 
+/// What `whitted` and `local` light with lamps.
+fn with_lamps() -> Controls {
+    Controls { integrator: Some(Integrator::Whitted), ..Controls::default() }
+}
+
 #[test]
 fn key_light_comes_from_above_behind_the_camera() {
-    let scene = staged(shape::teapot(3), Transform::default());
+    let scene = staged_as(shape::teapot(3), Transform::default(), &with_lamps());
+    assert!(scene.lights.len() == 2 && scene.ambient != Rgb::ZERO);
+    assert!(scene.lights.iter().all(|l| matches!(l.kind, LightKind::Directional { .. })));
     let Light { kind: LightKind::Directional { direction }, .. } = scene.lights[0] else { panic!("directional") };
     let view = (scene.camera.target - scene.camera.eye).normalize();
     assert!(direction.y < -0.5 && direction.dot(view) > 0.3 && (direction.length() - 1.0).abs() < 1e-6, "{direction}");
@@ -310,13 +320,63 @@ fn own_camera_and_lights_are_kept() {
         mirrored: false,
     };
     (scene.camera, scene.has_camera) = (camera, true);
-    staging::stage(&mut scene);
+    staging::stage(&mut scene, &Controls::default()).expect("nothing is read");
     assert_eq!(scene.camera, camera);
-    assert_eq!(scene.lights.len(), 2);
-    let lights = scene.lights.clone();
+    assert!(matches!(scene.background, Background::Image(_)), "a camera alone gives no light");
+    let lights = staged_as(shape::teapot(3), Transform::default(), &with_lamps()).lights;
     let mut scene = staging::bare_scene(Path::new("own.gltf"));
     scene.lights = lights.clone();
-    staging::stage(&mut scene);
-    assert_eq!((scene.lights, scene.background), (lights, Background::BLACK));
+    staging::stage(&mut scene, &Controls::default()).expect("nothing is read");
+    assert_eq!((scene.lights, scene.background), (lights, Background::BLACK), "no light is added or changed");
+    assert!(scene.notes.iter().any(|note| note.contains("--environment sky")), "{:?}", scene.notes);
     assert!(scene.camera.eye != scene.camera.target);
+}
+
+/// A box of `color` that glows with `emission` on all sides.
+fn glowing(emission: f32) -> Scene {
+    let mut scene = staging::bare_scene(Path::new("glow.obj"));
+    scene.materials.push(Material { emission: Rgb::splat(emission), ..Material::grey("glow") });
+    scene.meshes.push(shape::cuboid([1.0; 3], 1));
+    scene.objects.push(Object {
+        name: "box".to_owned(),
+        geometry: Geometry::Mesh(MeshId(0)),
+        transform: Transform::default(),
+        material: Some(gonio::scene::MaterialId(0)),
+        casts_shadow: None,
+        shading: None,
+    });
+    staging::stage(&mut scene, &Controls::default()).expect("nothing is read");
+    scene
+}
+
+#[test]
+fn what_glows_like_a_lamp_lights_its_scene_and_what_glows_like_a_display_does_not() {
+    let lamp = glowing(15.0);
+    assert!(lamp.lights.is_empty() && !lamp.background.shines() && lamp.objects.len() == 1, "no lamp is invented");
+    assert_eq!(lamp.settings.integrator, Integrator::Path, "whitted sees no light from faces");
+    assert!(lamp.notes.iter().any(|note| note.contains("--environment sky")), "{:?}", lamp.notes);
+    assert!(glowing(0.8).background.shines(), "a studio");
+}
+
+#[test]
+fn the_ground_is_darker_than_the_model_and_never_black() {
+    let ground = |grey: f32| {
+        let mut scene = staging::bare_scene(Path::new("a.obj"));
+        scene.materials.push(Material { color: Rgb::splat(grey), ..Material::grey("m") });
+        scene.meshes.push(shape::teapot(3));
+        scene.objects.push(Object {
+            name: "pot".to_owned(),
+            geometry: Geometry::Mesh(MeshId(0)),
+            transform: Transform::default(),
+            material: Some(gonio::scene::MaterialId(0)),
+            casts_shadow: None,
+            shading: None,
+        });
+        staging::stage(&mut scene, &Controls::default()).expect("nothing is read");
+        scene.materials.last().expect("the ground's").color.x
+    };
+    for grey in [0.25, 0.5, 0.9] {
+        assert!(ground(grey) < 0.7 * grey && ground(grey) > 0.3 * grey, "{grey}: {}", ground(grey));
+    }
+    assert!(ground(0.0) > 0.05);
 }

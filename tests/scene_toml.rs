@@ -439,7 +439,7 @@ fn a_wrong_override_is_named_in_the_error() {
 }
 
 #[test]
-fn a_bare_mesh_takes_overrides_of_render_film_and_camera_only() {
+fn a_bare_mesh_takes_overrides_of_what_the_stage_makes() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("m.obj");
     fs::write(&file, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("writable");
@@ -449,10 +449,15 @@ fn a_bare_mesh_takes_overrides_of_render_film_and_camera_only() {
         load(&file, &set(&["film.size=[64, 64]", "camera.eye=[0, 0, 9]", "render.samples=3"])).expect("a scene");
     assert_eq!((scene.film.width, scene.film.height, scene.settings.samples), (64, 64, 3));
     assert_eq!(scene.camera.eye, Vec3::new(0.0, 0.0, 9.0));
-    assert!(!scene.lights.is_empty(), "a bare mesh is staged");
+    assert!(scene.background.shines() && scene.metered, "a bare mesh is staged");
     let error = load(&file, &set(&["material.grey.color=red"])).expect_err("no materials to set").to_string();
     assert!(error.contains("the scene has no [[material]]"), "{error}");
-    let error = load(&file, &set(&["background.color=red"])).expect_err("not for meshes").to_string();
+    let red = load(&file, &set(&["background.color=red"])).expect("a scene");
+    assert_eq!(red.background, Background::flat(Rgb::X));
+    let dim = load(&file, &set(&["background.scale=0.5", "render.samples=3"])).expect("a scene");
+    let Background::Image(studio) = dim.background else { panic!("a studio") };
+    assert_eq!((studio.scale, dim.settings.samples, dim.metered), (Rgb::splat(0.5), 3, true));
+    let error = load(&file, &set(&["panel=[]"])).expect_err("not for meshes").to_string();
     assert!(error.contains("can only be set in a TOML scene"), "{error}");
 }
 

@@ -204,18 +204,7 @@ impl BenchArgs {
     ) -> anyhow::Result<SceneReport> {
         let name = path.display().to_string();
         let start = Instant::now();
-        let flags = SceneFlags {
-            define: Vec::new(),
-            size: None,
-            spp: Some(1),
-            seed: self.seed,
-            integrator: None,
-            max_depth: None,
-            panel: None,
-            max_memory: None,
-            root: None,
-            set: self.set.clone(),
-        };
+        let flags = SceneFlags { spp: Some(1), seed: self.seed, set: self.set.clone(), ..SceneFlags::default() };
         let mut scene = flags.load(path)?;
         let load_s = start.elapsed().as_secs_f64();
         let frame = frame_of(scene.film.width, scene.film.height, self.rays);

@@ -23,7 +23,7 @@ pub struct MergeArgs {
     /// Films, `.gfilm`; `-` is standard input, once
     #[arg(required = true, value_name = "FILM")]
     pub films: Vec<PathBuf>,
-    /// What to write: .gfilm, .png, .exr or .hdr; `-` is standard output
+    /// What to write: .gfilm, .png, .jpg, .webp, .exr or .hdr; `-` is standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     #[command(flatten)]

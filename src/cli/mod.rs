@@ -3,9 +3,11 @@
 pub mod bench;
 mod closed;
 pub mod compare;
+pub mod convert;
 pub mod devices;
 mod drivers;
 mod exact;
+mod exposure;
 mod fit;
 mod functions;
 mod gallery;
@@ -20,8 +22,10 @@ pub mod render;
 mod setup;
 mod sheet;
 mod strict;
+mod tables;
 mod team;
 pub mod verify;
+mod view;
 
 use anyhow::Context;
 use clap::{Parser, Subcommand};
@@ -52,7 +56,7 @@ impl From<u8> for ExitCode {
 
 /// A ray tracer in Rust and Vulkan compute. The same scene, seed and sample count give the same bits on every device.
 #[derive(Parser)]
-#[command(name = "gonio", version, max_term_width = 100)]
+#[command(name = "gonio", version, max_term_width = 100, args_override_self = true)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -71,6 +75,8 @@ struct Cli {
 enum Command {
     /// Make a picture of a scene.
     Render(render::RenderArgs),
+    /// Write the scene file that shows the picture of a model, to go on from.
+    Convert(convert::ConvertArgs),
     /// Add films of the same scene with different samples.
     Merge(merge::MergeArgs),
     /// Render the same samples on two backends and compare every bit.
@@ -125,12 +131,14 @@ fn run() -> ExitCode {
         .parse_default_env()
         .format(|out, record| match record.level() {
             log::Level::Info => writeln!(out, "{}", record.args()),
+            _ if record.target() == strict::NOTE => writeln!(out, "note: {}", record.args()),
             level => writeln!(out, "{}: {}", level.as_str().to_lowercase(), record.args()),
         })
         .init();
     strict::demand(cli.strict);
     let result = match &cli.command {
         Command::Render(args) => render::run(args, cli.quiet),
+        Command::Convert(args) => convert::run(args),
         Command::Merge(args) => merge::run(args),
         Command::Parity(args) => parity::run(args, cli.quiet),
         Command::Bench(args) => bench::run(args),

@@ -3,7 +3,8 @@
 use crate::film::tone::tonemap_from_name;
 use crate::film::write::{Aov, Format, Picture};
 use crate::film::{Film, FilmError, OutputFile};
-use crate::scene::ToneMap;
+use crate::scene::load::toml::color_from_text;
+use crate::scene::{Rgb, ToneMap};
 use anyhow::{Context, Result};
 use clap::Args;
 use std::io::Write;
@@ -12,25 +13,45 @@ use std::path::Path;
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Output")]
 pub struct OutputFlags {
-    /// Format, where the output's name does not tell: png, exr, hdr, gfilm.
+    /// Format, where the output's name does not tell: png, jpg, webp, exr, hdr, gfilm.
     #[arg(long, value_name = "NAME", value_parser = format_name)]
     pub format: Option<Format>,
     /// Bits a channel of a PNG.
     #[arg(long, default_value = "8", value_parser = ["8", "16"])]
     pub bits: String,
-    /// Exposure of a PNG in stops; the scene's if not given.
+    /// Exposure of a picture for displays in stops; the scene's if not given.
     #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = stops)]
     pub exposure: Option<f32>,
-    /// Tone curve of a PNG: clamp, normalise, reinhard, aces, agx; the scene's if not given.
+    /// Tone curve of a picture for displays: clamp, normalise, reinhard, aces, agx; the scene's if not given.
     #[arg(long, value_name = "NAME", value_parser = tonemap_from_name)]
     pub tonemap: Option<ToneMap>,
-    /// Encoding of a PNG: light to the power 1/N, or `srgb`; the scene's if not given.
+    /// Encoding of a picture for displays: light to the power 1/N, or `srgb`; the scene's if not given.
     #[arg(long, value_name = "N|srgb", allow_negative_numbers = true, value_parser = gamma)]
     pub gamma: Option<Gamma>,
+    /// A colour behind everything instead of what surrounds the scene, which lights it all the same: white, #20242c or
+    /// [0.1,0.2,0.3]. A model then stands on no ground. Formats of linear light keep it as alpha.
+    #[arg(long, value_name = "COLOR", value_parser = backdrop)]
+    pub background: Option<Backdrop>,
+}
+
+/// Linear light of the display.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Backdrop(pub Rgb);
+
+impl Backdrop {
+    /// Its channels, 0 to 1.
+    pub fn light(self) -> [f32; 3] {
+        self.0.to_array()
+    }
+}
+
+fn backdrop(text: &str) -> Result<Backdrop, String> {
+    let color = color_from_text(text).filter(|color| color.max_element() <= 1.0);
+    color.map(Backdrop).ok_or_else(|| "expected a colour: a name, #rrggbb, or [r,g,b] of linear light, 0 to 1".into())
 }
 
 fn format_name(name: &str) -> Result<Format, String> {
-    Format::from_name(name).ok_or_else(|| "allowed: png, exr, hdr, gfilm".into())
+    Format::from_name(name).ok_or_else(|| format!("allowed: {}", Format::NAMES.join(", ")))
 }
 
 fn stops(text: &str) -> Result<f32, String> {
@@ -73,7 +94,8 @@ impl OutputFlags {
     /// Writes the film and prints its hash and samples.
     pub fn write(&self, film: &mut Film, format: Format, aovs: &[Aov], mut output: OutputFile) -> Result<()> {
         self.apply(film);
-        let picture = Picture { format, sixteen_bit: self.sixteen_bit(), aovs };
+        let picture =
+            Picture { format, sixteen_bit: self.sixteen_bit(), backdrop: self.background.map(Backdrop::light), aovs };
         picture.write(film, &mut output)?;
         let piped = output.is_stdout();
         output.commit()?;

@@ -5,7 +5,7 @@ use super::interrupt::Interrupt;
 use super::output::{OutputFlags, print_report};
 use super::setup::{BackendFlags, Crop, Pixel, SceneFlags, bake_scene, bake_scene_with, crop_of, film_of};
 use super::sheet::{self, Sheet};
-use super::{ExitCode, Usage, drivers, progress, team};
+use super::{ExitCode, Usage, drivers, exposure, progress, team};
 use crate::bake::{BakeError, Baker, SceneData};
 use crate::film::write::{Aov, Format};
 use crate::film::{Film, OutputFile, Rect};
@@ -36,7 +36,7 @@ pub struct RenderArgs {
     /// .toml, .obj, .ply, .gltf, .glb, .xml (Mitsuba); `-` is TOML on standard input; `sphereflake:4`, `terrain:1M`,
     /// `hairball:1M` and `teapots:1M` need no file; with --gallery a folder of .toml files.
     scene: PathBuf,
-    /// .png, .exr, .hdr, or .gfilm for the film itself; `-` is PNG on standard output. Default: the scene's name, .png.
+    /// .png, .jpg, .webp, .exr, .hdr, or .gfilm for the film itself; `-` is PNG on standard output. Default: the scene's name, .png.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Render these sample indices only, the end not included.
@@ -117,7 +117,8 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     if args.backend.may_use_vulkan() {
         drivers::begin();
     }
-    let sheet = Sheet::open(&args.scene_flags, &args.scene)?;
+    let flags = SceneFlags { cut_out: args.picture.background.is_some(), ..args.scene_flags.clone() };
+    let sheet = Sheet::open(&flags, &args.scene)?;
     if let Some(pixel) = args.pixel {
         if sheet.is_divided() {
             return Err(sheet.refuse("--pixel").into());
@@ -137,6 +138,9 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     if path == Path::new("-") && args.stats.as_deref() == Some(Path::new("-")) {
         return Err(Usage("--output - and --stats - cannot both go to standard output".to_owned()).into());
+    }
+    if format == Format::Jpeg && args.transparent && args.picture.background.is_none() {
+        return Err(Usage(format!("--transparent: {} is a JPEG, which has no alpha", path.display())).into());
     }
     let output = OutputFile::open(&path)?;
     let stats_file = args.stats.as_deref().map(OutputFile::open).transpose()?;
@@ -183,7 +187,7 @@ pub fn run(args: &RenderArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         // Interrupted before there was anything to save.
         [] => return Ok(interrupted.map_or(ExitCode::SUCCESS, ExitCode::from)),
         [(_, film)] if !sheet.is_divided() => args.picture.write(film, format, &args.aov, output)?,
-        panels => sheet::write(&sheet, panels, &args.picture, output)?,
+        panels => sheet::write(&sheet, panels, &args.picture, format, output)?,
     }
     if args.output.is_none() {
         print_report(&format!("picture {}\n", path.display()), false)?;
@@ -216,6 +220,8 @@ struct Prepared {
     crop: Rect,
     data: SceneData,
     bake_time: Duration,
+    /// The meter chose what limits specks.
+    metered: bool,
 }
 
 /// Bakes a scene as the flags want it.
@@ -227,10 +233,23 @@ fn prepare(
 ) -> anyhow::Result<Prepared> {
     scene.settings.aovs |= !args.aov.is_empty();
     let crop = crop_of(&scene, args.crop)?;
-    scene.settings.transparent |= args.transparent;
+    scene.settings.transparent |= args.transparent || args.picture.background.is_some();
     let start = Instant::now();
-    let data = bake_scene_with(&scene, baker, &|| interrupt.exit_code().is_some())?;
-    Ok(Prepared { scene, crop, data, bake_time: start.elapsed() })
+    let asked = || interrupt.exit_code().is_some();
+    let mut own = Baker::default();
+    // What the meter bakes the picture shares.
+    let metered = scene.metered && scene.settings.clamp.is_none();
+    let baker = if scene.metered { Some(baker.unwrap_or(&mut own)) } else { baker };
+    let data = match baker {
+        Some(baker) => {
+            if scene.metered {
+                exposure::expose(&mut scene, baker, args.backend.threads, &asked)?;
+            }
+            bake_scene_with(&scene, Some(baker), &asked)?
+        }
+        None => bake_scene_with(&scene, None, &asked)?,
+    };
+    Ok(Prepared { scene, crop, data, bake_time: start.elapsed(), metered })
 }
 
 /// Renders one scene. A signal ends the program, without the unfinished files, while there is nothing worth saving: neither
@@ -242,7 +261,7 @@ fn develop(
     (unfinished, is_worth): (&[&OutputFile], bool),
     show_progress: bool,
 ) -> anyhow::Result<Developed> {
-    let Prepared { scene, crop, data, bake_time } = prepared;
+    let Prepared { scene, crop, data, bake_time, metered } = prepared;
     let session = team::session(&args.backend, data, film_of(scene, data, *crop))?;
     let samples = match (&args.samples, args.time, args.scene_flags.spp) {
         (Some(range), _, _) => range.0.clone(),
@@ -255,7 +274,7 @@ fn develop(
         render_samples(&session, samples, args.time, interrupt, show_progress)
     })?;
     let film = session.into_film();
-    report(&film, &outcome.counters);
+    report(&film, &outcome.counters, *metered);
     // Costs a hash of the film.
     let stats = args.stats.as_ref().map(|_| stats_json(args, data, &film, &outcome, *bake_time));
     let seconds = outcome.render_time.as_secs_f64();
@@ -301,12 +320,12 @@ fn render_samples(
 }
 
 /// Says what the user should know of the samples.
-fn report(film: &Film, counters: &Counters) {
+fn report(film: &Film, counters: &Counters, metered: bool) {
     if counters.limited > 0 {
-        log::warn!(
-            "{} contributions were limited by \"clamp\": the picture is darker than the scene",
-            counters.limited
-        );
+        // Who asked for no limit has no specks to miss, and may ask for them: `--set render.clamp=0`.
+        let level = if metered { log::Level::Info } else { log::Level::Warn };
+        let limited = counters.limited;
+        log::log!(level, "{limited} contributions were limited by \"clamp\": the picture is darker than the scene");
     }
     if film.nan_count() > 0 {
         log::warn!("{} contributions were not a number and count as 0", film.nan_count());

@@ -1,13 +1,14 @@
 //! What render, parity and others share: from flags to a baked scene and a renderer.
 
 use super::team::CPU;
+use super::view::ViewFlags;
 use super::{Usage, progress, strict};
 use crate::bake::{Baker, SceneData, bake_watched};
 use crate::film::{AovSums, Film, FilmSpec, Rect};
 use crate::layout::AovPixel;
 use crate::memory;
 use crate::render::vulkan::{FetchChoice, VulkanOptions};
-use crate::scene::{Integrator, Scene, Window, load};
+use crate::scene::{self, Integrator, Scene, Window, load};
 use crate::watch::Watch;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
@@ -90,13 +91,24 @@ impl From<IntegratorName> for Integrator {
     }
 }
 
+/// Parses `--scale`.
+fn scale(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(factor) if (0.001..=64.0).contains(&factor) => Ok(factor),
+        _ => Err("expected a number from 0.001 to 64".to_owned()),
+    }
+}
+
 /// The scene and what of it the command line changes.
-#[derive(Args, Clone, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Scene")]
 pub struct SceneFlags {
     /// Size of the full frame.
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
+    /// Make the frame so many times as wide and high, as in 0.5.
+    #[arg(long, value_name = "X", conflicts_with = "size", value_parser = scale)]
+    pub scale: Option<f64>,
     /// Samples a pixel.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16_777_216))]
     pub spp: Option<u32>,
@@ -125,6 +137,11 @@ pub struct SceneFlags {
     /// Read files of this folder only, whatever a scene calls them and wherever its links lead; for scenes of strangers.
     #[arg(long, value_name = "FOLDER")]
     pub root: Option<PathBuf>,
+    #[command(flatten)]
+    pub view: ViewFlags,
+    /// Not a flag: `Controls::cut_out`.
+    #[arg(skip)]
+    pub cut_out: bool,
 }
 
 /// `NAME=VALUE`.
@@ -150,6 +167,12 @@ impl SceneFlags {
 
     /// Opens a scene (`-` is TOML on standard input) with its keys changed by the flags.
     pub fn panels(&self, path: &Path) -> anyhow::Result<load::Panels> {
+        let (overrides, defines, controls) = self.changes()?;
+        Ok(load::Panels::open(path, &overrides, &defines)?.controlled(controls))
+    }
+
+    /// What the flags change: keys, parameters, and what a viewer lets one turn.
+    pub fn changes(&self) -> anyhow::Result<(Vec<load::Override>, Vec<(String, String)>, load::Controls)> {
         self.max_memory.into_iter().for_each(memory::set_limit);
         if let Some(root) = &self.root {
             let failed = |error| anyhow::Error::from(error).context(format!("--root {}", root.display()));
@@ -163,12 +186,16 @@ impl SceneFlags {
             .chain(&size)
             .map(|text| text.parse().map_err(|error| Usage(format!("--set {text}: {error}"))))
             .collect::<Result<Vec<load::Override>, _>>()?;
-        let defines: Vec<(String, String)> = self.define.iter().map(|d| (d.0.clone(), d.1.clone())).collect();
-        Ok(load::Panels::open(path, &overrides, &defines)?)
+        let defines = self.define.iter().map(|d| (d.0.clone(), d.1.clone())).collect();
+        let controls = self.view.controls(self.integrator.map(Integrator::from), self.cut_out)?;
+        Ok((overrides, defines, controls))
     }
 
     /// A loaded scene with its settings changed by the flags. Prints the loader's warnings.
     pub fn adjusted(&self, mut scene: Scene) -> anyhow::Result<Scene> {
+        if let Some(factor) = self.scale {
+            resize(&mut scene.film, factor)?;
+        }
         let settings = &mut scene.settings;
         settings.samples = self.spp.unwrap_or(settings.samples);
         settings.seed = self.seed.unwrap_or(settings.seed);
@@ -176,8 +203,35 @@ impl SceneFlags {
         settings.integrator = self.integrator.map_or(settings.integrator, Integrator::from);
         scene.warnings.extend(load::confine::strayed());
         strict::tell(&scene.warnings)?;
+        strict::note(&scene.notes);
         Ok(scene)
     }
+}
+
+/// Makes a film's frame `factor` times as large, and its crop with it.
+fn resize(film: &mut scene::Film, factor: f64) -> Result<(), Usage> {
+    let side = |pixels: u32| (f64::from(pixels) * factor).round().max(1.0);
+    let (width, height) = (side(film.width), side(film.height));
+    if width.max(height) > 65_535.0 {
+        return Err(Usage(format!("--scale {factor}: a frame of {width} x {height}; at most 65535 each way")));
+    }
+    (film.width, film.height) = (width as u32, height as u32);
+    film.crop = film.crop.map(|crop| {
+        let edge = |at: u32, end: f64| (f64::from(at) * factor).round().min(end);
+        let (x, y) = (edge(crop.x, width - 1.0), edge(crop.y, height - 1.0));
+        let [x1, y1] = [edge(crop.x + crop.width, width).max(x + 1.0), edge(crop.y + crop.height, height).max(y + 1.0)];
+        Window { x: x as u32, y: y as u32, width: (x1 - x) as u32, height: (y1 - y) as u32 }
+    });
+    Ok(())
+}
+
+/// Bakes a scene that is baked again later, which says what was dropped.
+pub fn bake_quietly(scene: &Scene, baker: &mut Baker, asked: &(dyn Fn() -> bool + Sync)) -> anyhow::Result<SceneData> {
+    let bar = progress::baking(scene);
+    let told = |steps: i64| bar.inc(steps.unsigned_abs());
+    let data = baker.bake(scene, &Watch::default().asking(asked).telling(&told));
+    bar.finish_and_clear();
+    data.with_context(|| scene.name.clone())
 }
 
 /// Bakes a scene and prints what baking dropped.

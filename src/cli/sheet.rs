@@ -1,9 +1,9 @@
 //! A scene file as one picture: the scene itself, or its panels side by side.
 
 use super::Usage;
-use super::output::OutputFlags;
+use super::output::{Backdrop, OutputFlags};
 use super::setup::SceneFlags;
-use crate::film::display::encode;
+use crate::film::display::encode_over;
 use crate::film::write::{Format, Plate, facts};
 use crate::film::{Film, FilmError, OutputFile};
 use crate::plot::panels::{self, Picture};
@@ -78,8 +78,12 @@ fn quoted(labels: &[String]) -> String {
 
 /// A film as a display shows it.
 pub fn displayed(film: &Film, max: u16) -> Picture {
+    displayed_over(film, None, max)
+}
+
+fn displayed_over(film: &Film, backdrop: Option<Backdrop>, max: u16) -> Picture {
     let image = film.resolve();
-    let pixels = encode(&image, &film.spec().display(), max);
+    let pixels = encode_over(&image, &film.spec().display(), backdrop.map(Backdrop::light), max);
     Picture { width: image.width, height: image.height, max, pixels }
 }
 
@@ -96,7 +100,7 @@ pub fn composed(sheet: &Sheet, pictures: &[(Option<String>, Picture)]) -> anyhow
 /// A PNG of a picture without facts.
 pub fn png(picture: &Picture) -> anyhow::Result<Vec<u8>> {
     let mut file = Vec::new();
-    plate(picture, false, None).write(&[], &mut file)?;
+    plate(picture, false, None).write(Format::Png, &[], &mut file)?;
     Ok(file)
 }
 
@@ -105,39 +109,40 @@ fn plate(picture: &Picture, transparent: bool, gamma: Option<f32>) -> Plate<'_> 
     Plate { width, height, pixels: &picture.pixels, sixteen_bit: picture.max > 255, transparent, gamma }
 }
 
-/// Writes panels as one PNG with their names, and prints of each what is printed of a film.
+/// Writes panels as one picture with their names, and prints of each what is printed of a film.
 pub fn write(
     sheet: &Sheet,
     films: &mut [(Option<String>, Film)],
     flags: &OutputFlags,
+    format: Format,
     mut output: OutputFile,
 ) -> anyhow::Result<()> {
-    let max = if flags.sixteen_bit() { 65_535 } else { 255 };
+    let max = if flags.sixteen_bit() && format == Format::Png { 65_535 } else { 255 };
     let (mut report, mut texts, mut pictures) = (String::new(), Vec::new(), Vec::new());
     for (label, film) in films.iter_mut() {
         flags.apply(film);
         let name = label.as_deref().unwrap_or_default();
         report += &format!("panel {name}\nfilm {}\nsamples {}\n", film.hash(), film.samples());
         texts.extend(facts(film).into_iter().map(|(keyword, text)| (keyword, format!("{name}: {text}"))));
-        pictures.push((label.clone(), displayed(film, max)));
+        pictures.push((label.clone(), displayed_over(film, flags.background, max)));
     }
     let whole = composed(sheet, &pictures)?;
     // Panels that are encoded differently are compared as they are, on a display of sRGB.
     let gammas = films.iter().map(|(_, film)| film.spec().gamma);
     let gamma = gammas.reduce(|a, b| if a == b { a } else { None }).flatten();
-    let transparent = films.iter().any(|(_, film)| film.spec().transparent);
-    let written = plate(&whole, transparent, gamma).write(&texts, &mut output).and_then(|()| output.flush());
+    let transparent = flags.background.is_none() && films.iter().any(|(_, film)| film.spec().transparent);
+    let written = plate(&whole, transparent, gamma).write(format, &texts, &mut output).and_then(|()| output.flush());
     written.map_err(|error| FilmError::write(output.path(), error))?;
     let piped = output.is_stdout();
     output.commit()?;
     super::output::print_report(&report, piped)
 }
 
-/// The format of a picture of panels: PNG.
+/// The format of a picture of panels: one that a display shows.
 pub fn format_of(sheet: &Sheet, flags: &OutputFlags, path: &Path) -> anyhow::Result<Format> {
     let format = flags.format_of(path)?;
     match format {
-        Format::Png => Ok(format),
+        _ if format.is_displayed() => Ok(format),
         _ if sheet.is_divided() => Err(sheet.refuse(&format!("{} is no .png", path.display())).into()),
         _ => Ok(format),
     }

@@ -72,6 +72,13 @@ fn tone_map_pixel(pixel: [f32; 4], gain: f64, display: &Display) -> [f64; 4] {
     [r, g, b, alpha]
 }
 
+/// A pixel of the display (not premultiplied) before a backdrop.
+fn over([r, g, b, alpha]: [f64; 4], backdrop: Option<[f32; 3]>) -> [f64; 4] {
+    let Some(behind) = backdrop else { return [r, g, b, alpha] };
+    let [r, g, b] = [0, 1, 2].map(|i| [r, g, b][i] * alpha + f64::from(behind[i]) * (1.0 - alpha));
+    [r, g, b, 1.0]
+}
+
 /// Exposure and tone curve: linear light of the display and alpha, each 0 to 1. Colour is not premultiplied in the
 /// result. `Normalise` divides by the largest of r, g, b in the whole image.
 pub fn tone_map(image: &Image, display: &Display) -> Vec<[f64; 4]> {
@@ -82,9 +89,14 @@ pub fn tone_map(image: &Image, display: &Display) -> Vec<[f64; 4]> {
 /// The displayed picture in integers of 0..=`max` (255 or 65,535): encoded light, and linear alpha where transparent, else
 /// `max`.
 pub fn encode(image: &Image, display: &Display, max: u16) -> Vec<[u16; 4]> {
+    encode_over(image, display, None, max)
+}
+
+/// The same, opaque before `backdrop` where there is one: linear light of the display, 0 to 1.
+pub fn encode_over(image: &Image, display: &Display, backdrop: Option<[f32; 3]>, max: u16) -> Vec<[u16; 4]> {
     let gain = gain(image, display);
     let integers = |&pixel: &[f32; 4]| {
-        let [r, g, b, alpha] = tone_map_pixel(pixel, gain, display);
+        let [r, g, b, alpha] = over(tone_map_pixel(pixel, gain, display), backdrop);
         let [r, g, b] = [r, g, b].map(|v| quantise(display_encode(v, display.gamma), max));
         [r, g, b, quantise(alpha, max)]
     };

@@ -1,5 +1,6 @@
 //! The camera as written.
 
+use super::Film;
 use glam::{Vec2, Vec3};
 
 /// How the image plane is reached.
@@ -33,4 +34,22 @@ pub struct Camera {
     pub shift: Vec2,
     /// Left and right are swapped, as in a mirror.
     pub mirrored: bool,
+}
+
+/// One of the cameras that a file has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedCamera {
+    /// May be empty.
+    pub name: String,
+    pub camera: Camera,
+    /// Width of its frame over its height, where it says so.
+    pub aspect: Option<f32>,
+}
+
+impl NamedCamera {
+    /// The width of its frame, pixels, for the height of `film`; that of `film` where the camera does not say.
+    pub fn width_of(&self, film: &Film) -> u32 {
+        let width = self.aspect.map(|aspect| (f64::from(film.height) * f64::from(aspect)).round());
+        width.map_or(film.width, |width| width.clamp(1.0, 65_535.0) as u32)
+    }
 }

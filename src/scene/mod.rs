@@ -14,7 +14,7 @@ pub mod table;
 pub mod texture;
 pub mod transform;
 
-pub use camera::{Camera, Lens, Projection};
+pub use camera::{Camera, Lens, NamedCamera, Projection};
 pub use error::{Location, SceneError};
 pub use light::{Attenuation, Flaps, IntensityUnit, Light, LightKind, Slide};
 pub use material::{
@@ -57,6 +57,8 @@ pub struct Scene {
     pub camera: Camera,
     /// Whether the file has a camera: if not, `camera` means nothing until the scene is staged.
     pub has_camera: bool,
+    /// All cameras of a file that may have several, in its order.
+    pub cameras: Vec<NamedCamera>,
     pub background: Background,
     /// I_a.
     pub ambient: Rgb,
@@ -66,6 +68,10 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     pub objects: Vec<Object>,
     pub lights: Vec<Light>,
+    /// Whether the film's exposure is still to be measured; what it says until then means nothing.
+    pub metered: bool,
+    /// What loading chose where the user might have chosen otherwise; printed once, and no warning.
+    pub notes: Vec<String>,
     /// What loading dropped, replaced or ignored; printed once.
     pub warnings: Vec<String>,
 }

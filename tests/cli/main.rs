@@ -15,3 +15,4 @@ mod strict;
 mod support;
 mod team;
 mod verify;
+mod view;

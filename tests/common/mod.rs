@@ -147,6 +147,7 @@ pub fn empty_scene() -> Scene {
             shading: Shading::Phong,
         },
         has_camera: true,
+        cameras: Vec::new(),
         camera: Camera {
             eye: Vec3::new(0.0, 0.0, 5.0),
             target: Vec3::ZERO,
@@ -164,6 +165,8 @@ pub fn empty_scene() -> Scene {
         meshes: Vec::new(),
         objects: Vec::new(),
         lights: Vec::new(),
+        metered: false,
+        notes: Vec::new(),
         warnings: Vec::new(),
     }
 }

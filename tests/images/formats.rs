@@ -199,10 +199,10 @@ fn formats_are_known_by_their_extensions() {
     ] {
         assert_eq!(Format::of(Path::new(name)).unwrap(), format);
     }
-    for (name, found) in [("a.jpg", "unknown extension .jpg"), ("picture", "no extension")] {
+    for (name, found) in [("a.gif", "unknown extension .gif"), ("picture", "no extension")] {
         let error = Format::of(Path::new(name)).unwrap_err();
         assert_eq!(error.exit_code(), 2);
-        assert_eq!(error.to_string(), format!("{name}: {found}; allowed: .png, .exr, .hdr, .gfilm"));
+        assert_eq!(error.to_string(), format!("{name}: {found}; allowed: .png, .jpg, .webp, .exr, .hdr, .gfilm"));
     }
     assert!(Format::Exr.has_layers() && Format::Gfilm.has_layers() && !Format::Png.has_layers());
     assert_eq!("depth".parse::<Aov>(), Ok(Aov::Depth));

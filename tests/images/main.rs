@@ -62,6 +62,6 @@ fn ramp(width: u32, height: u32) -> Vec<[f32; 4]> {
 fn encode(film: &Film, format: Format, sixteen_bit: bool) -> Vec<u8> {
     let aovs = Aov::ALL.map(|(_, aov)| aov);
     let mut bytes = Vec::new();
-    Picture { format, sixteen_bit, aovs: &aovs }.write_to(film, &mut bytes).unwrap();
+    Picture { format, sixteen_bit, backdrop: None, aovs: &aovs }.write_to(film, &mut bytes).unwrap();
     bytes
 }

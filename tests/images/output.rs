@@ -23,7 +23,7 @@ fn a_committed_file_has_its_name_and_leaves_nothing_else() {
     let film = film_of(4, &ramp(4, 2), |_| {});
     let mut file = OutputFile::open(&path).unwrap();
     assert_eq!(names(folder.path()).len(), 2);
-    let picture = Picture { format: Format::Gfilm, sixteen_bit: false, aovs: &[] };
+    let picture = Picture { format: Format::Gfilm, sixteen_bit: false, backdrop: None, aovs: &[] };
     picture.write(&film, &mut file).unwrap();
     assert_eq!(fs::read(&path).unwrap(), b"before");
     file.commit().unwrap();
@@ -215,7 +215,7 @@ fn what_is_no_regular_file_is_written_to_and_stays() {
     std::thread::spawn(move || sender.send(fs::read(reader).unwrap()));
     let film = film_of(64, &ramp(64, 64), |_| {});
     let mut file = OutputFile::open(&path).unwrap();
-    let picture = Picture { format: Format::Gfilm, sixteen_bit: false, aovs: &[] };
+    let picture = Picture { format: Format::Gfilm, sixteen_bit: false, backdrop: None, aovs: &[] };
     picture.write(&film, &mut file).unwrap();
     file.commit().unwrap();
     // A time limit: what was renamed away never ends the reader's wait.

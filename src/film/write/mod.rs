@@ -2,12 +2,14 @@
 
 mod exr;
 mod hdr;
+mod photo;
 mod png;
 
 pub use self::exr::write_linear;
 pub use hdr::rgbe;
-pub use png::{Plate, write_rgb8};
+pub use png::write_rgb8;
 
+use super::display::encode_over;
 use super::{Film, FilmError, OutputFile, gfilm};
 use std::io::{self, Write};
 use std::path::Path;
@@ -18,6 +20,10 @@ use std::str::FromStr;
 pub enum Format {
     /// Displayed: tone curve, sRGB, 8 or 16 bits.
     Png,
+    /// Displayed: tone curve, sRGB, 8 bits, lossy, without alpha.
+    Jpeg,
+    /// Displayed: tone curve, sRGB, 8 bits, lossless.
+    Webp,
     /// Linear f32 and auxiliary channels.
     Exr,
     /// Linear, 8 bits and a shared exponent (Radiance).
@@ -27,10 +33,15 @@ pub enum Format {
 }
 
 impl Format {
+    /// What there is, for messages.
+    pub const NAMES: [&str; 6] = ["png", "jpg", "webp", "exr", "hdr", "gfilm"];
+
     /// By its name or a file's extension, in any case.
     pub fn from_name(name: &str) -> Option<Self> {
         match name.to_ascii_lowercase().as_str() {
             "png" => Some(Self::Png),
+            "jpg" | "jpeg" => Some(Self::Jpeg),
+            "webp" => Some(Self::Webp),
             "exr" => Some(Self::Exr),
             "hdr" | "pic" => Some(Self::Hdr),
             "gfilm" => Some(Self::Gfilm),
@@ -48,9 +59,14 @@ impl Format {
             Some(extension) => format!("unknown extension .{extension}"),
             None => "no extension".into(),
         };
-        extension
-            .and_then(|e| Self::from_name(&e))
-            .ok_or_else(|| FilmError::Usage(format!("{}: {found}; allowed: .png, .exr, .hdr, .gfilm", path.display())))
+        extension.and_then(|e| Self::from_name(&e)).ok_or_else(|| {
+            FilmError::Usage(format!("{}: {found}; allowed: .{}", path.display(), Self::NAMES.join(", .")))
+        })
+    }
+
+    /// Whether files of this format hold what a display shows.
+    pub fn is_displayed(self) -> bool {
+        matches!(self, Self::Png | Self::Jpeg | Self::Webp)
     }
 
     /// Whether files of this format can hold auxiliary values.
@@ -92,11 +108,13 @@ impl FromStr for Aov {
 }
 
 /// How a film becomes a file. How it is displayed is the film's own (`Film::set_display`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Picture<'a> {
     pub format: Format,
     /// PNG only: 16 bits a channel instead of 8.
     pub sixteen_bit: bool,
+    /// Displayed formats only: what a film without a background is shown before, linear Rec. 709 of the display, 0 to 1.
+    pub backdrop: Option<[f32; 3]>,
     /// EXR only; those the film does not keep are left out. A gfilm keeps what the film has.
     pub aovs: &'a [Aov],
 }
@@ -111,10 +129,54 @@ impl Picture<'_> {
     /// Writes the film; the same film and settings give the same bytes.
     pub fn write_to(&self, film: &Film, out: &mut dyn Write) -> io::Result<()> {
         match self.format {
-            Format::Png => png::write(film, self.sixteen_bit, out),
+            Format::Png | Format::Jpeg | Format::Webp => self.write_displayed(film, out),
             Format::Exr => exr::write(film, self.aovs, out),
             Format::Hdr => hdr::write(film, out),
             Format::Gfilm => gfilm::write(film, out),
+        }
+    }
+}
+
+impl Picture<'_> {
+    /// The displayed film with the facts as text.
+    fn write_displayed(&self, film: &Film, out: &mut dyn Write) -> io::Result<()> {
+        let image = film.resolve();
+        let display = film.spec().display();
+        let sixteen_bit = self.sixteen_bit && self.format == Format::Png;
+        let pixels = encode_over(&image, &display, self.backdrop, if sixteen_bit { 65_535 } else { 255 });
+        let plate = Plate {
+            width: image.width,
+            height: image.height,
+            pixels: &pixels,
+            sixteen_bit,
+            transparent: display.transparent && self.backdrop.is_none(),
+            gamma: display.gamma,
+        };
+        plate.write(self.format, &facts(film), out)
+    }
+}
+
+/// A displayed picture: what `encode` gives, and what else a file says of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Plate<'a> {
+    pub width: u32,
+    pub height: u32,
+    /// Integers of 0..=255, or 0..=65,535.
+    pub pixels: &'a [[u16; 4]],
+    /// PNG only.
+    pub sixteen_bit: bool,
+    /// With alpha.
+    pub transparent: bool,
+    /// None: sRGB. Only PNG says it.
+    pub gamma: Option<f32>,
+}
+
+impl Plate<'_> {
+    /// As a file of a displayed format with `facts`, keywords and texts.
+    pub fn write(&self, format: Format, facts: &[(&'static str, String)], out: &mut dyn Write) -> io::Result<()> {
+        match format {
+            Format::Jpeg | Format::Webp => photo::write(self, format, facts, out),
+            _ => png::write(self, facts, out),
         }
     }
 }

@@ -1,32 +1,13 @@
-//! A light meter for scenes whose lights are in absolute units, as a camera would have.
+//! How bright the lights of a scene are that come in absolute units.
 
 use super::bounds::Bounds;
-use crate::scene::{LightKind, Scene};
+use crate::scene::{Light, LightKind, Scene};
 use std::f64::consts::PI;
 
-/// Radiance of a white surface at the scene's centre that faces all lights, as metered pictures show it.
-const EXPOSED: f64 = 0.8;
-/// Scenes metered within these are left as their author made them.
-const ACCEPTED: std::ops::RangeInclusive<f64> = 0.1..=2.0;
-
-/// Scales all lights of `scene` by one factor, if a white surface at its centre would be far too bright or too dark to see;
-/// says so in a warning. Emission is not scaled: it is shown as it is.
-pub(super) fn expose(scene: &mut Scene) {
-    let metered = meter(scene);
-    if ACCEPTED.contains(&metered) || !(metered > 0.0 && metered.is_finite()) {
-        return;
-    }
-    let factor = EXPOSED / metered;
-    for light in &mut scene.lights {
-        light.intensity = (light.intensity.as_dvec3() * factor).as_vec3();
-    }
-    scene.warnings.push(format!("lights are scaled by {factor:.3e}, so that the picture is neither black nor white"));
-}
-
-/// Irradiance at the centre from all lights, shadows and cones aside, over pi.
-fn meter(scene: &Scene) -> f64 {
+/// Radiance of a white surface at the scene's centre that faces all lights, shadows and cones aside.
+pub(super) fn light_level(scene: &Scene) -> f64 {
     let bounds = Bounds::of(scene);
-    let irradiance = |light: &crate::scene::Light| {
+    let irradiance = |light: &Light| {
         let intensity = light.intensity.as_dvec3();
         let luminance = 0.2126 * intensity.x + 0.7152 * intensity.y + 0.0722 * intensity.z;
         match light.kind {
@@ -39,4 +20,10 @@ fn meter(scene: &Scene) -> f64 {
         }
     };
     scene.lights.iter().map(irradiance).sum::<f64>() / PI
+}
+
+/// The film's unit for a scene of this light level: 2^0 where the film holds it well, so that most scenes have the same.
+pub(super) fn unit_exponent(level: f64) -> i32 {
+    let (_, exponent) = libm::frexp(level);
+    if (-6..=8).contains(&exponent) { 0 } else { exponent.clamp(-40, 40) }
 }

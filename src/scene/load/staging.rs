@@ -1,14 +1,18 @@
 //! A stage for models that come without camera or lights: `gonio render bunny.obj` shows a good picture.
 //!
-//! An object is seen from the front right and slightly above, on a ground, under a key light that casts shadows, a fill
-//! light that does not, and a light sky; a room is seen from inside. Everything is derived from the model's own bounds, so
-//! its size and place do not matter.
+//! An object is seen from the front right and slightly above, on a ground a little darker than itself, in a studio that is an
+//! image all around; integrators that no image lights get lamps instead. A room is seen from inside. Light that the file has is
+//! kept, and then there is no other. Everything is derived from the model's own bounds, so its size and place do not matter.
 
 use super::bounds::{Bounds, Room, free_distances};
+use super::controls::{Around, Controls};
+use super::meter;
+use super::reflectance::mean_reflectance;
+use super::surroundings::{Surroundings, towards};
 use crate::scene::{
     Attenuation, Background, Camera, Film, Filter, Flaps, Geometry, Integrator, IntensityUnit, Light, LightKind,
-    Material, MaterialId, MeshId, Object, Projection, RenderSettings, Rgb, Sampler, Scene, Shading, Shadows, ToneMap,
-    Transform, shape,
+    Material, MaterialId, MeshId, Model, Object, Projection, RenderSettings, Rgb, Sampler, Scene, SceneError, Shading,
+    Shadows, ToneMap, Transform, shape,
 };
 use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::PI;
@@ -24,6 +28,10 @@ const FILL: f64 = 0.88;
 const KEY: f32 = 0.72;
 const FILL_LIGHT: f32 = 0.18;
 const AMBIENT: f32 = 0.1;
+/// Samples a pixel under `path`: where images and lamps light the scene, what is left of the grain is a step of the display.
+const SAMPLES_TRACED: u32 = 32;
+/// What glows more than white paper in good light is a lamp, not a display.
+const LAMP: f32 = 1.0;
 
 /// A scene with nothing in it, named after its file; `stage` gives it what it still lacks.
 pub fn bare_scene(path: &Path) -> Scene {
@@ -57,6 +65,7 @@ pub fn bare_scene(path: &Path) -> Scene {
         },
         camera: camera(DVec3::Z, DVec3::ZERO, FOV_Y),
         has_camera: false,
+        cameras: Vec::new(),
         background: Background::BLACK,
         ambient: Rgb::ZERO,
         materials: Vec::new(),
@@ -65,38 +74,124 @@ pub fn bare_scene(path: &Path) -> Scene {
         meshes: Vec::new(),
         objects: Vec::new(),
         lights: Vec::new(),
+        metered: false,
+        notes: Vec::new(),
         warnings: Vec::new(),
     }
 }
 
-/// Gives `scene` the camera, lights, ambient light, background and ground that it lacks. Cameras and lights of its own are
-/// kept; the ground comes only where both are missing.
-pub fn stage(scene: &mut Scene) {
+/// How scenes of other programs are computed and shown, as far as their files do not say.
+pub fn prepare(scene: &mut Scene) {
+    scene.film.tonemap = ToneMap::Aces;
+    scene.settings.shadows = Shadows::Filtered;
+    scene.metered = true;
+}
+
+/// Gives `scene` the camera, light and ground that it lacks, as `controls` want them, and chooses how it is computed. Cameras and
+/// lights of its own are kept; the ground comes only where both are missing.
+pub fn stage(scene: &mut Scene, controls: &Controls) -> Result<(), SceneError> {
     let bounds = Bounds::of(scene);
-    let (no_camera, no_lights) = (!scene.has_camera, scene.lights.is_empty());
     let kind = bounds.room(scene);
     let room = kind != Room::None;
-    if no_camera {
+    let has_camera = scene.has_camera;
+    if !has_camera {
         scene.camera = if room { room_camera(scene, &bounds, kind) } else { object_camera(&scene.film, &bounds) };
         scene.has_camera = true;
     }
-    if no_lights {
-        match room {
-            true => light_room(scene, &bounds),
-            false => light_object(scene),
+    controls.aim(scene, bounds.centre());
+    let (own, glows) = (scene.lights.len(), has_lamps(scene));
+    let is_lit = own > 0 || glows || scene.background.shines();
+    choose_integrator(scene, room && !glows && controls.surroundings.is_none(), controls);
+    let traced = matches!(scene.settings.integrator, Integrator::Path | Integrator::Direct);
+    let model = mean_reflectance(scene);
+    if let Some(around) = &controls.surroundings {
+        scene.background = controls.background(around, scene)?;
+        if !traced {
+            scene.ambient = Rgb::splat(AMBIENT);
         }
-        scene.ambient = Rgb::splat(if room { 2.0 * AMBIENT } else { AMBIENT });
-        scene.background = Background::Gradient { bottom: Rgb::new(0.55, 0.55, 0.55), top: Rgb::new(0.72, 0.8, 0.92) };
+    } else if is_lit {
+        keep_light(scene, own, glows, traced);
+    } else if room {
+        light_room(scene, &bounds);
+        light_all_around(scene, 2.0 * AMBIENT, traced);
+    } else if traced {
+        scene.background = controls.background(&Around::Ours(Surroundings::Studio), scene)?;
+    } else {
+        light_object(scene);
+        light_all_around(scene, AMBIENT, traced);
     }
-    if no_camera && no_lights && !room && bounds.wants_ground() {
-        add_ground(scene, &bounds);
+    let wanted = !controls.cut_out
+        && !has_camera
+        && !room
+        && (!is_lit || controls.surroundings.is_some())
+        && bounds.wants_ground();
+    if controls.ground.unwrap_or(wanted) {
+        add_ground(scene, &bounds, ground_color(model));
+    }
+    Ok(())
+}
+
+/// Whether an object glows so that it lights others.
+fn has_lamps(scene: &Scene) -> bool {
+    let is_lamp = |id: &MaterialId| {
+        let material = &scene.materials[id.0 as usize];
+        let shown = if matches!(material.model, Model::Emissive) { material.color } else { material.emission };
+        shown.max_element() > LAMP
+    };
+    scene.objects.iter().any(|object| match (object.material, object.geometry) {
+        (Some(id), _) => is_lamp(&id),
+        (None, Geometry::Mesh(mesh)) => scene.meshes[mesh.0 as usize].face_materials.iter().any(|id| is_lamp(id)),
+        (None, Geometry::Sphere) => false,
+    })
+}
+
+/// By the scene alone, never by the time that something takes. A room without lamps is lit by points, whose light from wall to
+/// wall would show grain.
+fn choose_integrator(scene: &mut Scene, lit_by_points: bool, controls: &Controls) {
+    let chosen = if lit_by_points { Integrator::Whitted } else { Integrator::Path };
+    let settings = &mut scene.settings;
+    settings.integrator = controls.integrator.unwrap_or(chosen);
+    if matches!(settings.integrator, Integrator::Path | Integrator::Direct) {
+        settings.samples = SAMPLES_TRACED;
     }
 }
 
-/// Unit vector towards `azimuth` (from +z to +x) and `elevation`, radians.
-fn towards(azimuth: f64, elevation: f64) -> DVec3 {
-    let c = libm::cos(elevation);
-    DVec3::new(libm::sin(azimuth) * c, libm::sin(elevation), libm::cos(azimuth) * c)
+/// The file's own light alone lights the scene; says so.
+fn keep_light(scene: &mut Scene, lights: usize, glows: bool, traced: bool) {
+    let level = meter::light_level(scene);
+    if level > 0.0 {
+        // What other programs light with an environment would be black in our shadows.
+        scene.ambient = if traced { scene.ambient } else { Rgb::splat(0.06 * level as f32) };
+        if scene.film.unit_exponent == 0 {
+            scene.film.unit_exponent = meter::unit_exponent(level);
+        }
+    }
+    let what = match (lights, glows) {
+        (0, _) => "what glows in the file".to_owned(),
+        (1, _) => "the file's own light".to_owned(),
+        (n, _) => format!("the file's own {n} lights"),
+    };
+    scene.notes.push(format!("{}: lit by {what} alone; --environment sky adds daylight", scene.name));
+}
+
+/// For integrators that no image lights: ambient light and a pale sky. Under the others the sky of a room is behind its windows.
+fn light_all_around(scene: &mut Scene, ambient: f32, traced: bool) {
+    if !traced {
+        scene.ambient = Rgb::splat(ambient);
+    }
+    scene.background = Background::Gradient { bottom: Rgb::new(0.55, 0.55, 0.55), top: Rgb::new(0.72, 0.8, 0.92) };
+}
+
+/// A little darker than a model of this reflectance, so that neither white stands on white nor black on black.
+fn ground_color(model: f64) -> Rgb {
+    Rgb::splat((0.5 * model).clamp(0.1, 0.36) as f32)
+}
+
+/// Degrees from +z to +x of the direction from which the camera looks.
+pub(super) fn azimuth_of(camera: &Camera) -> f64 {
+    let back = (camera.eye.as_dvec3() - camera.target.as_dvec3()).normalize_or(DVec3::Z);
+    let is_level = back.x.abs().max(back.z.abs()) > 1e-3;
+    if is_level { libm::atan2(back.x, back.z).to_degrees() } else { 0.0 }
 }
 
 /// The front of a model is +z (as in glTF); thin ones are seen from their broad side.
@@ -112,6 +207,11 @@ fn object_camera(film: &Film, bounds: &Bounds) -> Camera {
     } else {
         (30.0, 20.0)
     };
+    camera_from(film, bounds, azimuth, elevation)
+}
+
+/// A camera that sees all of `bounds` from `azimuth` (from +z to +x) and `elevation`, degrees.
+pub(super) fn camera_from(film: &Film, bounds: &Bounds, azimuth: f64, elevation: f64) -> Camera {
     let back = towards(azimuth.to_radians(), elevation.to_radians());
     let distance = fit(film, bounds, back);
     camera(bounds.centre() + back * distance, bounds.centre(), FOV_Y)
@@ -184,8 +284,7 @@ fn light(name: &str, kind: LightKind, irradiance: f32, attenuation: Attenuation,
 
 /// Directional lights are the same at every size: the key from the upper left behind the camera, the fill from its right.
 fn light_object(scene: &mut Scene) {
-    let back = (scene.camera.eye.as_dvec3() - scene.camera.target.as_dvec3()).normalize_or(DVec3::Z);
-    let azimuth = if back.x.abs().max(back.z.abs()) > 1e-3 { libm::atan2(back.x, back.z) } else { 0.0 };
+    let azimuth = azimuth_of(&scene.camera).to_radians();
     let lights = [("key", -50.0_f64, 50.0_f64, KEY, true), ("fill", 55.0, 20.0, FILL_LIGHT, false)];
     for (name, turn, elevation, strength, shadow) in lights {
         let direction = -towards(azimuth + turn.to_radians(), elevation.to_radians()).as_vec3();
@@ -211,16 +310,17 @@ fn light_room(scene: &mut Scene, bounds: &Bounds) {
 }
 
 /// A disk under the model, wide enough that the default camera never sees its rim.
-fn add_ground(scene: &mut Scene, bounds: &Bounds) {
+pub(super) fn add_ground(scene: &mut Scene, bounds: &Bounds, color: Rgb) {
     /// Radii of the model: at a downward view of 5 degrees the ground is 15 away.
     const REACH: f64 = 60.0;
     let mut mesh = shape::disk(1.0, 96);
     mesh.name = "ground".to_owned();
-    let radius = bounds.radius() * REACH;
+    // In single precision, as a scene file would say it.
+    let radius = f64::from((bounds.radius() * REACH) as f32);
     // A little below, so that a flat bottom does not lie in the same plane; far from the origin at least its rounding.
     let gap = (bounds.radius() * 1e-4).max(bounds.low().abs().max_element() * 1e-6);
-    let centre = bounds.centre().with_y(bounds.low().y - gap);
-    let ground = Material { color: Rgb::splat(0.55), ..Material::grey("ground") };
+    let centre = bounds.centre().with_y(bounds.low().y - gap).as_vec3().as_dvec3();
+    let ground = Material { color, ..Material::grey("ground") };
     scene.materials.push(ground);
     scene.meshes.push(mesh);
     scene.objects.push(Object {

@@ -12,11 +12,10 @@ mod node;
 mod source;
 mod texture;
 
-use super::meter;
 use super::staging;
 use super::text::read_bytes;
 use crate::memory::Shortage;
-use crate::scene::{Location, Material, MaterialId, MeshId, Rgb, Scene, SceneError};
+use crate::scene::{Location, Material, MaterialId, MeshId, Scene, SceneError};
 use accessor::Accessors;
 use gltf::json::Root;
 use source::Buffers;
@@ -51,6 +50,9 @@ const DISPENSABLE: [&str; 9] = [
     "KHR_materials_variants",
     "KHR_xmp_json_ld",
 ];
+
+/// Of those, what no picture shows: not worth a word.
+const UNSEEN: [&str; 4] = ["KHR_animation_pointer", "KHR_materials_variants", "KHR_xmp", "KHR_xmp_json_ld"];
 
 /// Vertices of all meshes together: a file may name one array many times.
 const VERTICES_MAX: usize = 1 << 27;
@@ -131,7 +133,6 @@ struct Loader<'a> {
     scene: Scene,
     /// Warnings, each once.
     notes: BTreeSet<String>,
-    has_camera: bool,
     /// Materials by index, and the set of texture coordinates each wants.
     materials: HashMap<Option<usize>, (MaterialId, Option<u32>)>,
     /// Meshes by index and morph weights.
@@ -155,7 +156,6 @@ fn read(bytes: &[u8], path: &Path) -> Result<Scene, Failure> {
         textures: Textures::new(&root, &buffers, folder, path),
         scene: staging::bare_scene(path),
         notes,
-        has_camera: false,
         materials: HashMap::new(),
         parts: HashMap::new(),
         units: HashMap::new(),
@@ -217,8 +217,11 @@ fn check_extensions(root: &Root, notes: &mut BTreeSet<String>) -> Result<(), Fai
     if !missing.is_empty() {
         return Err(Failure::new("extensionsRequired", format!("not supported: {}", missing.join(", "))));
     }
-    for name in root.extensions_used.iter().filter(|name| !known(name)) {
-        notes.insert(format!("extension {} is ignored", name.escape_debug()));
+    let unseen = |name: &&String| UNSEEN.contains(&name.as_str());
+    let ignored = root.extensions_used.iter().filter(|name| !known(name) && !unseen(name));
+    let ignored: Vec<String> = ignored.map(|name| name.escape_debug().to_string()).collect();
+    if !ignored.is_empty() {
+        notes.insert(format!("extensions that are ignored: {}", ignored.join(", ")));
     }
     Ok(())
 }
@@ -295,11 +298,6 @@ impl Loader<'_> {
         let mut scene = self.scene;
         scene.warnings.extend(self.textures.warnings);
         scene.warnings.extend(self.notes);
-        if !scene.lights.is_empty() {
-            // What glTF viewers light with an environment would be black in our shadows.
-            scene.ambient = Rgb::splat(0.05);
-            meter::expose(&mut scene);
-        }
         scene
     }
 }

@@ -3,8 +3,8 @@
 use super::accessor::Accessors;
 use super::{Failure, Loader, Part};
 use crate::scene::{
-    Attenuation, Camera, Flaps, Geometry, IntensityUnit, Light, LightKind, OUT_OF_LIMITS, Object, Projection, Rgb,
-    Transform,
+    Attenuation, Camera, Flaps, Geometry, IntensityUnit, Light, LightKind, NamedCamera, OUT_OF_LIMITS, Object,
+    Projection, Rgb, Transform,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec3};
 use gltf::json::camera::Type as CameraType;
@@ -125,7 +125,7 @@ impl Loader<'_> {
             }
         }
         if let Some(camera) = node.camera {
-            self.add_camera(camera.value(), world, &place)?;
+            self.add_camera(camera.value(), world, &name, &place)?;
         }
         let light = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
         if let Some(light) = light {
@@ -221,24 +221,19 @@ impl Loader<'_> {
         Ok((0..count).map(instance).collect())
     }
 
-    /// The first camera is taken.
-    fn add_camera(&mut self, index: usize, world: DAffine3, place: &str) -> Result<(), Failure> {
+    /// The first camera is taken, unless the user wants another.
+    fn add_camera(&mut self, index: usize, world: DAffine3, name: &str, place: &str) -> Result<(), Failure> {
         let Some(camera) = self.root.cameras.get(index) else {
             let message = format!("refers to camera {index}; there are {}", self.root.cameras.len());
             return Err(Failure::new(place, message));
         };
-        if self.has_camera {
-            self.notes.insert("only the first camera is used".to_owned());
-            return Ok(());
-        }
+        let name = camera.name.clone().unwrap_or_else(|| name.to_owned());
         let place = format!("cameras[{index}]");
+        let mut aspect = None;
         let projection = match (&camera.type_, &camera.perspective, &camera.orthographic) {
             (Checked::Valid(CameraType::Perspective), Some(p), _) => {
                 // Our field of view is vertical too; the frame's shape is the camera's if it has one.
-                if let Some(aspect) = p.aspect_ratio.filter(|a| (0.01..=100.0).contains(a)) {
-                    self.scene.film.width =
-                        (f64::from(self.scene.film.height) * f64::from(aspect)).round().max(1.0) as u32;
-                }
+                aspect = p.aspect_ratio.filter(|a| (0.01..=100.0).contains(a));
                 if !(p.yfov > 1e-4 && p.yfov < std::f32::consts::PI) {
                     return Err(Failure::new(place, format!("a yfov of {} radians; allowed are 0 to pi", p.yfov)));
                 }
@@ -262,8 +257,7 @@ impl Loader<'_> {
         let eye = world.translation;
         // Far enough away that rounding does not bend the direction.
         let reach = eye.abs().max_element().max(1.0);
-        self.scene.has_camera = true;
-        self.scene.camera = Camera {
+        let camera = Camera {
             eye: eye.as_vec3(),
             target: (eye + forward / forward.length() * reach).as_vec3(),
             up: (up / up.length()).as_vec3(),
@@ -272,7 +266,12 @@ impl Loader<'_> {
             shift: Vec2::ZERO,
             mirrored: false,
         };
-        self.has_camera = true;
+        let named = NamedCamera { name, camera, aspect };
+        if !self.scene.has_camera {
+            (self.scene.camera, self.scene.has_camera) = (camera, true);
+            self.scene.film.width = named.width_of(&self.scene.film);
+        }
+        self.scene.cameras.push(named);
         Ok(())
     }
 

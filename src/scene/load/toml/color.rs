@@ -38,6 +38,14 @@ pub fn color(node: &Node, range: Range) -> Option<Rgb> {
     linear.iter().all(|channel| range.contains(*channel)).then(|| Rgb::from_array(linear.map(|x| x as f32)))
 }
 
+/// A colour as a scene file writes it, or the same without its quotation marks.
+pub fn color_from_text(text: &str) -> Option<Rgb> {
+    let place = super::document::Place::Override(0);
+    let quoted = || super::document::parse_value(&format!("{text:?}"), place).ok();
+    let node = super::document::parse_value(text, place).ok().or_else(quoted)?;
+    color(&node, Range::NOT_NEGATIVE)
+}
+
 fn srgb_text(text: &str) -> Option<[u8; 3]> {
     let code = match text.strip_prefix('#') {
         None => NAMES.iter().find(|(name, _)| name.eq_ignore_ascii_case(text))?.1,

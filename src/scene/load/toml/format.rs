@@ -205,12 +205,18 @@ pub static BACKGROUND: Section = Section {
             "none",
             "Equirectangular picture all around, HDR or EXR as a rule, relative to the scene file: its top row is +y, its centre +z, a quarter from the left +x",
         ),
-        key("scale", Kind::Color(Range::NOT_NEGATIVE), "1", "Factor on `image`"),
+        key(
+            "environment",
+            Kind::Choice(&["studio", "sky", "white"]),
+            "none",
+            "Surroundings that need no file, which white paper on the floor shows as about 1: a photographer's studio, a clear sky, or white all around; seen from +z the light comes from the upper left",
+        ),
+        key("scale", Kind::Color(Range::NOT_NEGATIVE), "1", "Factor on `image` or `environment`"),
         key(
             "rotate",
             Kind::Special("four numbers [x, y, z, degrees]"),
             "none",
-            "Turns `image` about an axis, counter-clockwise seen from its tip",
+            "Turns `image` or `environment` about an axis, counter-clockwise seen from its tip",
         ),
     ],
 };
@@ -261,6 +267,7 @@ pub static OBJECT: Section = Section {
         key("major_radius", Kind::Number(Range::POSITIVE), "1", "From the torus's centre to the middle of its tube").only(&["torus"]),
         key("minor_radius", Kind::Number(Range::POSITIVE), "0.25", "Of the tube, less than `major_radius`").only(&["torus"]),
         key("rings", Kind::Integer { min: 3, max: 4096 }, "32", "Segments around the tube").only(&["torus"]),
+        key("coordinates", Kind::Choice(&["square", "polar"]), "`\"square\"`", "What u and v are: along x and -z of the square around it, or around it and from its middle to the rim").only(&["disk"]),
         key("profile", Kind::Special("2 to 4096 pairs [radius, height]"), "required", "What turns around the y axis: up along the outer wall, over the rim and down the inner one").only(&["lathe"]),
         key("curve", Kind::Choice(&["smooth", "polyline"]), "`\"smooth\"`", "How the profile's points are joined").only(&["lathe"]),
         key("steps", Kind::Integer { min: 1, max: 64 }, "8", "Rows between two points of a smooth profile").only(&["lathe"]),

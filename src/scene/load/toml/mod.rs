@@ -21,15 +21,18 @@ mod settings;
 mod shapes;
 mod table;
 mod texture;
+mod write;
 
+pub use color::color_from_text;
 pub(super) use keys::LARGEST;
 pub use metal::{METALS, Metal};
 pub use overrides::Override;
 pub(super) use panel::{Layout, panel_from_text};
 pub use reader::nearest;
+pub use write::{Additions, quoted, staged_text};
 
 use super::staging::bare_scene;
-use crate::scene::{IntensityUnit, Rgb, Scene, SceneError};
+use crate::scene::{Integrator, IntensityUnit, Rgb, Scene, SceneError};
 use document::Document;
 use format::SCENE;
 use reader::Reader;
@@ -76,6 +79,34 @@ pub fn override_film(scene: &mut Scene, overrides: &[Override]) -> Result<(), Sc
     let mut document = Document::empty(Path::new(&scene.name));
     document.apply(overrides)?;
     document.judge(|| read_film(&Reader::open(&document, &document.root, &SCENE)?, &mut scene.film))
+}
+
+/// The integrator that the changes ask for.
+pub fn asked_integrator(scene: &Scene, overrides: &[Override]) -> Result<Option<Integrator>, SceneError> {
+    if !are_set(overrides, "render", "integrator") {
+        return Ok(None);
+    }
+    let mut asked = Scene { objects: Vec::new(), lights: Vec::new(), ..bare_scene(Path::new(&scene.name)) };
+    override_settings(&mut asked, overrides)?;
+    Ok(Some(asked.settings.integrator))
+}
+
+/// Whether a change is of something that only a scene file has tables for.
+pub fn concerns_tables(change: &Override) -> bool {
+    let first = change.path.first().map_or("", String::as_str);
+    ["background", "material", "object", "light"].contains(&first)
+}
+
+/// Whether a change gives the scene another background, and does not only turn or scale it.
+pub fn replaces_background(change: &Override) -> bool {
+    let [first, rest @ ..] = &change.path[..] else { return false };
+    first == "background" && !matches!(rest, [key] if key == "scale" || key == "rotate")
+}
+
+/// Whether a change sets `key` of the table `section`.
+pub fn are_set(overrides: &[Override], section: &str, key: &str) -> bool {
+    let sets = |change: &Override| change.path.iter().map(String::as_str).eq([section, key]);
+    overrides.iter().any(sets)
 }
 
 /// Changes what `[render]`, `[film]` and `[camera]` say of a scene that came from another format.

@@ -27,10 +27,15 @@ impl Names {
         Ok(name.to_owned())
     }
 
+    /// The index of a name, if there is such a one.
+    pub fn get(&self, name: &str) -> Option<usize> {
+        self.indices.get(name).map(|(index, _)| *index)
+    }
+
     /// The index of the name that `key` of `table` refers to.
     pub fn find(&self, table: &Reader, key: &str, name: &str) -> Result<usize> {
-        if let Some((index, _)) = self.indices.get(name) {
-            return Ok(*index);
+        if let Some(index) = self.get(name) {
+            return Ok(index);
         }
         let mut known: Vec<&str> = self.indices.keys().map(String::as_str).collect();
         // Hash order is not the same in each run; messages are.

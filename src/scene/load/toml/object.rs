@@ -25,6 +25,7 @@ pub fn read_objects(root: &Reader, materials: &Names, scene: &mut Scene) -> Resu
     }
     let mut objects = Objects {
         scene,
+        is_lit: root.has("light"),
         materials,
         names: Names::new("object"),
         grey: None,
@@ -68,6 +69,8 @@ enum Normals {
 
 struct Objects<'s> {
     scene: &'s mut Scene,
+    /// Whether the document has lights of its own.
+    is_lit: bool,
     materials: &'s Names,
     names: Names,
     /// The house's default material, once something needs it.
@@ -195,7 +198,8 @@ impl Objects<'_> {
                 Normals::Smooth => compute_smooth_normals(mesh, crease),
             }
         }
-        if !loaded.lights.is_empty() {
+        // A scene that has lights has chosen.
+        if !loaded.lights.is_empty() && !self.is_lit {
             let message = format!("{}: its {} lights are left out of this scene", loaded.name, loaded.lights.len());
             self.scene.warnings.push(message);
         }
@@ -204,7 +208,8 @@ impl Objects<'_> {
         Ok(pieces)
     }
 
-    /// Takes over what `other` shows; its camera, lights and settings are left behind.
+    /// Takes over what `other` shows; its camera, lights and settings are left behind. A material of the document stands for one
+    /// of the same name in `other`.
     fn merge(&mut self, other: Scene) -> Vec<Piece> {
         let scene = &mut *self.scene;
         let (textures, materials, meshes, tables) = (
@@ -213,6 +218,11 @@ impl Objects<'_> {
             scene.meshes.len() as u32,
             scene.tables.len() as u32,
         );
+        let named = |(index, material): (usize, &Material)| {
+            MaterialId(self.materials.get(&material.name).map_or(index as u32 + materials, |own| own as u32))
+        };
+        let places: Vec<MaterialId> = other.materials.iter().enumerate().map(named).collect();
+        let place = |id: MaterialId| places[id.0 as usize];
         scene.textures.extend(other.textures);
         scene.tables.extend(other.tables);
         scene.materials.extend(other.materials.into_iter().map(|mut material| {
@@ -220,8 +230,7 @@ impl Objects<'_> {
                 binding.texture.0 += textures;
             }
             if let Model::Blend { a, b, .. } | Model::Sides { front: a, back: b } = &mut material.model {
-                a.0 += materials;
-                b.0 += materials;
+                [a, b].into_iter().for_each(|id| *id = place(*id));
             }
             if let Model::Measured { table } = &mut material.model {
                 table.0 += tables;
@@ -230,7 +239,7 @@ impl Objects<'_> {
         }));
         scene.meshes.extend(other.meshes.into_iter().map(|mut mesh| {
             for id in &mut mesh.face_materials {
-                id.0 += materials;
+                *id = place(*id);
             }
             mesh
         }));
@@ -243,7 +252,7 @@ impl Objects<'_> {
                 Geometry::Sphere => Geometry::Sphere,
             },
             transform: object.transform,
-            material: object.material.map(|id| MaterialId(id.0 + materials)),
+            material: object.material.map(place),
         };
         other.objects.into_iter().map(piece).collect()
     }

@@ -7,6 +7,7 @@ use super::place::read_rotation;
 use super::reader::{Reader, Result, in_range};
 use super::texture::Textures;
 use crate::scene::Shadows;
+use crate::scene::load::surroundings;
 use crate::scene::{
     Background, Camera, Environment, Film, Filter, Integrator, IntensityUnit, Lens, Projection, RenderSettings,
     Sampler, Shading, ToneMap,
@@ -24,22 +25,35 @@ pub struct LightSettings {
 pub const SHADINGS: [(&str, Shading); 3] =
     [("flat", Shading::Flat), ("gouraud", Shading::Gouraud), ("phong", Shading::Phong)];
 
+/// Words of `integrator`.
+pub const INTEGRATORS: [(&str, Integrator); 4] = [
+    ("local", Integrator::Local),
+    ("whitted", Integrator::Whitted),
+    ("direct", Integrator::Direct),
+    ("path", Integrator::Path),
+];
+/// Words of `sampler`.
+pub const SAMPLERS: [(&str, Sampler); 3] =
+    [("sobol", Sampler::Sobol), ("stratified", Sampler::Stratified), ("independent", Sampler::Independent)];
+/// Words of `intensity`.
+pub const UNITS: [(&str, IntensityUnit); 2] =
+    [("lecture", IntensityUnit::Lecture), ("radiometric", IntensityUnit::Radiometric)];
+/// Words of `tonemap`.
+pub const TONEMAPS: [(&str, ToneMap); 5] = [
+    ("clamp", ToneMap::Clamp),
+    ("normalise", ToneMap::Normalise),
+    ("reinhard", ToneMap::Reinhard),
+    ("aces", ToneMap::Aces),
+    ("agx", ToneMap::Agx),
+];
+
 /// Overwrites what `[render]` writes.
 pub fn read_render(root: &Reader, settings: &mut RenderSettings, light: &mut LightSettings) -> Result<()> {
     let Some(table) = root.table("render", &RENDER)? else { return Ok(()) };
-    let integrators = [
-        ("local", Integrator::Local),
-        ("whitted", Integrator::Whitted),
-        ("direct", Integrator::Direct),
-        ("path", Integrator::Path),
-    ];
-    let samplers =
-        [("sobol", Sampler::Sobol), ("stratified", Sampler::Stratified), ("independent", Sampler::Independent)];
-    let units = [("lecture", IntensityUnit::Lecture), ("radiometric", IntensityUnit::Radiometric)];
-    set(&mut settings.integrator, table.choice("integrator", &integrators)?);
+    set(&mut settings.integrator, table.choice("integrator", &INTEGRATORS)?);
     set(&mut settings.samples, table.integer("samples")?);
     set(&mut settings.seed, table.integer("seed")?);
-    set(&mut settings.sampler, table.choice("sampler", &samplers)?);
+    set(&mut settings.sampler, table.choice("sampler", &SAMPLERS)?);
     set(&mut settings.max_depth, table.integer("max_depth")?);
     set(&mut settings.min_weight, table.float("min_weight")?);
     set(&mut settings.rr_depth, table.integer("rr_depth")?);
@@ -55,7 +69,7 @@ pub fn read_render(root: &Reader, settings: &mut RenderSettings, light: &mut Lig
         };
     }
     set(&mut settings.shading, table.choice("shading", &SHADINGS)?);
-    set(&mut light.unit, table.choice("intensity", &units)?);
+    set(&mut light.unit, table.choice("intensity", &UNITS)?);
     set(&mut light.ambient, table.color("ambient")?);
     Ok(())
 }
@@ -66,13 +80,6 @@ const GAMMA: Range = Range::new(0.1, 10.0);
 /// Overwrites what `[film]` writes.
 pub fn read_film(root: &Reader, film: &mut Film) -> Result<()> {
     let Some(table) = root.table("film", &FILM)? else { return Ok(()) };
-    let tonemaps = [
-        ("clamp", ToneMap::Clamp),
-        ("normalise", ToneMap::Normalise),
-        ("reinhard", ToneMap::Reinhard),
-        ("aces", ToneMap::Aces),
-        ("agx", ToneMap::Agx),
-    ];
     if let Some(size) = table.numbers::<2>("size", Range::new(1.0, 65_535.0))? {
         if size.iter().any(|number| number.fract() != 0.0) {
             return Err(table.bad("size", "\"size\" must be two integers [width, height]"));
@@ -84,7 +91,7 @@ pub fn read_film(root: &Reader, film: &mut Film) -> Result<()> {
         let exponent = in_range(node, Range::POSITIVE).and_then(power_of_two);
         film.unit_exponent = exponent.filter(|e| (-40..=40).contains(e)).ok_or_else(|| table.mismatch("unit", node))?;
     }
-    set(&mut film.tonemap, table.choice("tonemap", &tonemaps)?);
+    set(&mut film.tonemap, table.choice("tonemap", &TONEMAPS)?);
     set(&mut film.exposure, table.float("exposure")?);
     if let Some(node) = table.node("gamma") {
         let srgb = matches!(&node.value, Value::String(text) if text == "srgb").then_some(None);
@@ -219,6 +226,13 @@ fn check_view(table: &Reader, camera: &Camera) -> Result<()> {
 /// What `[background]` writes; what a gradient leaves out is black.
 pub fn read_background(root: &Reader, textures: &mut Textures) -> Result<Background> {
     let Some(table) = root.table("background", &BACKGROUND)? else { return Ok(Background::BLACK) };
+    for key in ["color", "bottom", "top", "image"] {
+        table.exclusive("environment", key)?;
+    }
+    if let Some(ours) = table.choice("environment", &surroundings::NAMES)? {
+        let scale = table.color("scale")?.unwrap_or(Vec3::ONE);
+        return Ok(ours.background(&mut textures.list, scale, read_rotation(&table)?.unwrap_or_default()));
+    }
     for (key, other) in
         [("color", "bottom"), ("color", "top"), ("image", "color"), ("image", "bottom"), ("image", "top")]
     {
@@ -226,7 +240,9 @@ pub fn read_background(root: &Reader, textures: &mut Textures) -> Result<Backgro
     }
     let Some(texture) = textures.read_environment(&table)? else {
         if let Some(key) = ["scale", "rotate"].into_iter().find(|key| table.has(key)) {
-            return Err(table.bad(key, format!("{key:?} of the background needs \"image\" beside it")));
+            return Err(
+                table.bad(key, format!("{key:?} of the background needs \"image\" or \"environment\" beside it"))
+            );
         }
         let color = table.color("color")?.unwrap_or(Vec3::ZERO);
         let (bottom, top) = (table.color("bottom")?.unwrap_or(color), table.color("top")?.unwrap_or(color));
