@@ -7,7 +7,7 @@ use gonio::layout::{DISTRIBUTION_BECKMANN, DISTRIBUTION_TROWBRIDGE_REITZ};
 use gonio::plot::curves::{self, FACETS, Interface, InterfaceKind, direction};
 use gonio::plot::figure::{Axis, Curve, Frame, nice_step, number};
 use gonio::plot::lecture::{ROWS, caption, numbered, plots};
-use gonio::plot::page::{Entry, Part, mathml, page};
+use gonio::plot::page::{Content, Entry, Part, body, kept, mathml, page};
 use gonio::plot::panels::{Picture, sheet};
 use gonio::plot::shelf::{Shelf, shelf_of};
 use gonio::plot::{Figure, Format, lobes, render};
@@ -326,21 +326,29 @@ fn every_formula_is_mathml() {
 
 #[test]
 fn the_page_needs_nothing_else_and_escapes_what_it_shows() {
-    let entry = Entry {
+    let content = Content {
         name: "02-phong".into(),
-        row: Some(2),
-        title: "phong".into(),
         caption: "x < y & z".into(),
+        settings: "path, 4 samples".into(),
         pictures: vec![(Some("n < 2".into()), vec![1, 2, 3]), (Some("n > 2".into()), vec![4, 5, 6])],
         columns: 2,
         plots: vec!["<svg></svg>".into()],
         text: "# <b>\n".into(),
     };
-    let page = page("T", &[Part { entries: vec![entry] }]);
+    let (name, body) = ("02-phong".to_owned(), body(&content));
+    let entry = Entry { name, row: Some(2), title: "phong".into(), key: "k1".into(), body: body.clone() };
+    let page = page("T", "gonio 1 < 2", &[Part { entries: vec![entry] }], &["3 Blinn & co".into()]);
+    assert!(
+        page.contains("gonio 1 &lt; 2")
+            && page.contains("path, 4 samples")
+            && page.contains("To come: 3 Blinn &amp; co.")
+    );
+    assert_eq!(kept(&page, "02-phong", "k1"), Some(body));
+    assert!(kept(&page, "02-phong", "k2").is_none() && kept(&page, "03-blinn", "k1").is_none());
     assert!(page.contains("x &lt; y &amp; z") && page.contains("# &lt;b&gt;") && page.contains("base64,AQID"));
     assert!(page.contains("<h2>2 · Phong's highlight</h2>") && page.contains("<a href=\"#row-2\">"), "{page}");
     assert!(page.contains("<figcaption>n &lt; 2</figcaption>") && page.contains("<math"), "{page}");
-    let outside = ["http:", "https:", "src=\"/", "<link", "<script", "@import", "url("];
+    let outside = ["http:", "https:", "src=\"/", "<link", "<script src", "@import", "url("];
     assert!(outside.iter().all(|word| !page.contains(word)), "{page}");
 }
 
@@ -435,4 +443,18 @@ fn a_gallery_is_a_folder_of_pictures_and_one_page() {
     assert_eq!(page.matches("<figure>").count(), 3);
     let size = |name: &str| image::image_dimensions(folder.path().join("out").join(name)).unwrap();
     assert_eq!((size("ball.png"), size("02-phong.png")), ((24, 16), (54, 40)));
+    assert!(page.contains("gonio 0.") && page.contains("samples, seed 0, 24 x 16 pixels"), "version and settings");
+    assert!(page.contains("To come: 1 Lambert's law; 3 ") && !page.contains("; 2 Phong"), "rows without a scene");
+    assert!(page.contains("showModal") && page.contains("ArrowRight"));
+    // What is up to date is kept; what is not is rendered again.
+    let told = |flags: &[&str]| {
+        let made = gonio(folder.path(), &[&["render", "--gallery", "scenes", "-o", "out"], flags].concat());
+        assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+        String::from_utf8(made.stdout).unwrap()
+    };
+    assert!(told(&["--backend", "cpu"]).contains("2 as they were"));
+    assert_eq!(std::fs::read_to_string(folder.path().join("out/index.html")).unwrap(), page);
+    std::fs::write(scenes.join("ball.toml"), SCENE.to_owned() + "# changed\n").unwrap();
+    assert!(told(&["--backend", "cpu"]).contains("1 as they were"));
+    assert!(!told(&["--backend", "cpu", "--spp", "1"]).contains("as they were"), "other flags, other pictures");
 }

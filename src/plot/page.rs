@@ -7,13 +7,12 @@ use pulldown_latex::config::DisplayMode;
 use pulldown_latex::{Parser, RenderConfig, Storage, push_mathml};
 
 /// What the page shows of one scene.
-pub struct Entry {
+pub struct Content {
     /// The file's stem.
     pub name: String,
-    pub row: Option<u32>,
-    /// The name without the row's number.
-    pub title: String,
     pub caption: String,
+    /// How it was rendered.
+    pub settings: String,
     /// PNG files and their labels; a picture that is not divided has one without.
     pub pictures: Vec<(Option<String>, Vec<u8>)>,
     /// Pictures in a row, where there is room for them.
@@ -22,6 +21,19 @@ pub struct Entry {
     pub plots: Vec<String>,
     /// The scene file.
     pub text: String,
+}
+
+/// A scene of the page.
+pub struct Entry {
+    /// The file's stem.
+    pub name: String,
+    pub row: Option<u32>,
+    /// The name without the row's number.
+    pub title: String,
+    /// Stands for all that the scene's HTML depends on.
+    pub key: String,
+    /// HTML, by `body` now or when the page was last made.
+    pub body: String,
 }
 
 /// A part of the page: a row of the lecture, or a scene that belongs to none.
@@ -58,6 +70,8 @@ const STYLE: &str = "\
 body{margin:0 auto;padding:1rem;max-width:68rem;font:1rem/1.5 'Noto Sans',system-ui,sans-serif;color:#1e1e1e;background:#fff}\
 h1{font-size:1.8rem;line-height:1.2;margin:.5rem 0 1rem}h2{font-size:1.4rem;line-height:1.25;margin:0 0 .6rem}\
 h3{font-size:1.05rem;margin:1.6rem 0 .3rem}p{margin:.5rem 0;max-width:58rem}\
+dialog{border:0;padding:0;width:100vw;height:100vh;max-width:none;max-height:none;background:#111}dialog img{width:100%;height:100%;object-fit:contain}dialog p{position:fixed;bottom:.5rem;left:1rem;margin:0;color:#ddd}\
+.panels img{cursor:zoom-in}.facts{color:#666;font-size:.9rem}\
 section{border-top:1px solid #ccc;padding:1.6rem 0}\
 nav{columns:17rem;line-height:1.8}nav a{display:block}a{color:#0b57a4}\
 .formula{background:#f4f4f4;padding:.5rem .8rem;overflow-x:auto;overflow-y:hidden}\
@@ -92,23 +106,49 @@ pub fn mathml(latex: &str) -> String {
     math
 }
 
-/// The page of `parts`, in their order.
-pub fn page(title: &str, parts: &[Part]) -> String {
+/// A picture fills the screen when it is clicked; arrow keys go on to others, Escape goes back.
+const SCRIPT: &str = "\
+const all=[...document.querySelectorAll('.panels img')],d=document.querySelector('dialog'),i=d.querySelector('img'),p=d.querySelector('p');let n=0;\
+const show=k=>{n=(k+all.length)%all.length;i.src=all[n].src;p.textContent=all[n].alt;if(!d.open)d.showModal()};\
+all.forEach((e,k)=>e.onclick=()=>show(k));d.onclick=()=>d.close();\
+d.onkeydown=e=>{const s={ArrowRight:1,ArrowDown:1,ArrowLeft:-1,ArrowUp:-1}[e.key];if(s){e.preventDefault();show(n+s)}};";
+
+/// The page of `parts`, in their order. `facts`: what all scenes have in common, such as the version. `to_come`: headings of what
+/// has no pictures yet.
+pub fn page(title: &str, facts: &str, parts: &[Part], to_come: &[String]) -> String {
     let title = escaped(title);
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
-         <style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n<nav>\n"
+         <style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n<p class=\"facts\">{}</p>\n<nav>\n",
+        escaped(facts)
     );
     for part in parts {
         page.push_str(&format!("<a href=\"#{}\">{}</a>\n", part.id(), part.heading()));
     }
     page.push_str("</nav>\n");
+    if !to_come.is_empty() {
+        let names: Vec<String> = to_come.iter().map(|name| escaped(name)).collect();
+        page.push_str(&format!("<p class=\"facts\">To come: {}.</p>\n", names.join("; ")));
+    }
     for part in parts {
         page.push_str(&section(part));
     }
-    page.push_str("</body>\n</html>\n");
+    page.push_str(&format!("<dialog><img alt=\"\"><p></p></dialog>\n<script>{SCRIPT}</script>\n</body>\n</html>\n"));
     page
+}
+
+/// What stands before and behind a scene's HTML.
+fn marks(name: &str, key: &str) -> [String; 2] {
+    let name = escaped(name).replace("--", "- -");
+    [format!("<!-- scene {name} {key} -->\n"), format!("<!-- end of {name} -->\n")]
+}
+
+/// The HTML of the scene `name` in a page that was made before, if it was made for the same `key`.
+pub fn kept(page: &str, name: &str, key: &str) -> Option<String> {
+    let [start, end] = marks(name, key);
+    let (_, rest) = page.split_once(&start)?;
+    rest.split_once(&end).map(|(body, _)| body.to_owned())
 }
 
 fn section(part: &Part) -> String {
@@ -121,12 +161,14 @@ fn section(part: &Part) -> String {
         if part.entries.len() > 1 {
             html.push_str(&format!("<h3>{}</h3>\n", escaped(&entry.title)));
         }
-        html.push_str(&scene(entry));
+        let [start, end] = marks(&entry.name, &entry.key);
+        html.push_str(&(start + &entry.body + &end));
     }
     html + "</section>\n"
 }
 
-fn scene(entry: &Entry) -> String {
+/// The HTML of a scene.
+pub fn body(entry: &Content) -> String {
     let name = escaped(&entry.name);
     let several = if entry.pictures.len() > 1 { " several" } else { "" };
     let columns = entry.columns.clamp(1, entry.pictures.len().max(1));
@@ -145,7 +187,7 @@ fn scene(entry: &Entry) -> String {
             "<figure><img alt=\"{alt}\" src=\"data:image/png;base64,{picture}\">{caption}</figure>\n"
         ));
     }
-    html.push_str("</div>\n");
+    html.push_str(&format!("</div>\n<p class=\"facts\">{}</p>\n", escaped(&entry.settings)));
     let plots: String = entry.plots.iter().map(|plot| format!("<div class=\"plot\">{plot}</div>\n")).collect();
     if !plots.is_empty() {
         html.push_str(&format!("<div class=\"plots\">\n{plots}</div>\n"));

@@ -157,3 +157,24 @@ fn ctrl_c_does_not_wait_for_a_software_device() {
         println!("SKIPPED: no software device");
     }
 }
+
+#[test]
+fn an_interrupted_gallery_has_its_page_with_what_there_is_and_says_what_is_to_come() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("scenes")).expect("a folder");
+    folder.file("scenes/a.toml", super::support::SCENE);
+    folder.file("scenes/b.toml", super::support::SCENE.replace("samples = 2", "samples = 16777216"));
+    let mut command = Command::new(program());
+    command.args(["render", "--gallery", "scenes", "-o", "out", "--backend", "cpu"]).current_dir(folder.path(""));
+    let mut gallery = Running(command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program starts"));
+    let start = Instant::now();
+    while !folder.path("out/a.png").is_file() {
+        assert!(start.elapsed() < Duration::from_secs(60), "it never rendered the first");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(300));
+    gallery.signal("-INT");
+    assert_eq!(gallery.ends().code(), Some(130));
+    let page = String::from_utf8(folder.bytes("out/index.html")).expect("text");
+    assert!(page.contains("id=\"a\"") && page.contains("To come: b.") && !page.contains("id=\"b\""), "{page}");
+}
