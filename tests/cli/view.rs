@@ -89,7 +89,7 @@ fn surroundings_light_a_model_and_turn_and_scale() {
     assert!((middle(&double)[0] / middle(&white)[0] - 2.0).abs() < 0.01);
     // The sun stands at the left; half a turn brings it behind the model.
     let lit = |turn: &str| middle(&with(&["--environment", "sky", "--environment-rotate", turn]))[0];
-    assert!(lit("0") > 2.0 * lit("180"), "{} {}", lit("0"), lit("180"));
+    assert!(lit("0") > 1.5 * lit("180"), "{} {}", lit("0"), lit("180"));
     // A picture of a file: one texel of light.
     folder.cpu(&["render", "scene.toml", "-o", "around.hdr"]);
     assert!(middle(&with(&["--environment", "around.hdr"]))[0] > 0.0);
