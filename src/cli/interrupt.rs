@@ -50,25 +50,30 @@ impl Interrupt {
         work: impl FnOnce() -> T,
     ) -> T {
         let temporaries: Vec<&Path> = files.iter().filter_map(|file| file.temporary()).collect();
+        let end_in_vain = || {
+            if let Some(code) = self.exit_code().filter(|_| !worth()) {
+                // Nobody could act on a failure here.
+                temporaries.iter().for_each(|path| drop(std::fs::remove_file(path)));
+                low_level::exit(code.into());
+            }
+        };
         let done = AtomicBool::new(false);
-        thread::scope(|scope| {
+        let result = thread::scope(|scope| {
             let watcher = scope.spawn(|| {
                 let mut came = None;
                 while !done.load(Ordering::SeqCst) {
-                    if let Some(code) = self.exit_code()
-                        && came.get_or_insert_with(Instant::now).elapsed() >= patience
-                        && !worth()
-                    {
-                        // Nobody could act on a failure here.
-                        temporaries.iter().for_each(|path| drop(std::fs::remove_file(path)));
-                        low_level::exit(code.into());
+                    if self.exit_code().is_some() && came.get_or_insert_with(Instant::now).elapsed() >= patience {
+                        end_in_vain();
                     }
                     thread::park_timeout(LOOK_AGAIN);
                 }
             });
             let _leave = Leave { done: &done, watcher: watcher.thread() };
             work()
-        })
+        });
+        // Giving back the memory of a device and a film takes a second where they are large.
+        end_in_vain();
+        result
     }
 }
 
