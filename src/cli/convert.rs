@@ -2,7 +2,7 @@
 
 use super::output::print_report;
 use super::setup::SceneFlags;
-use super::{exposure, strict};
+use super::{ExitCode, exposure, strict};
 use crate::bake::Baker;
 use crate::film::{FilmError, OutputFile};
 use crate::scene::Scene;
@@ -10,7 +10,6 @@ use crate::scene::load;
 use clap::Args;
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
-use std::process::ExitCode;
 
 #[derive(Args)]
 #[command(after_help = "\
@@ -31,6 +30,7 @@ pub struct ConvertArgs {
 pub fn run(args: &ConvertArgs) -> anyhow::Result<ExitCode> {
     let mut output = OutputFile::open(&args.output)?;
     let (overrides, _, controls) = args.scene_flags.changes()?;
+    load::confine::begin(&args.model);
     let exposed = |scene: &mut Scene| -> anyhow::Result<()> {
         let adjusted = args.scene_flags.adjusted(std::mem::replace(scene, load::staging::bare_scene(Path::new(""))))?;
         *scene = adjusted;

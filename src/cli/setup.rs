@@ -168,6 +168,7 @@ impl SceneFlags {
     /// Opens a scene (`-` is TOML on standard input) with its keys changed by the flags.
     pub fn panels(&self, path: &Path) -> anyhow::Result<load::Panels> {
         let (overrides, defines, controls) = self.changes()?;
+        load::confine::begin(path);
         Ok(load::Panels::open(path, &overrides, &defines)?.controlled(controls))
     }
 
@@ -178,7 +179,6 @@ impl SceneFlags {
             let failed = |error| anyhow::Error::from(error).context(format!("--root {}", root.display()));
             load::confine::set_root(root).map_err(failed)?;
         }
-        load::confine::begin(path);
         let size = self.size.map(|size| format!("film.size=[{},{}]", size.width, size.height));
         let overrides = self
             .set

@@ -46,11 +46,6 @@ impl<'a> Sheet<'a> {
         })
     }
 
-    /// What the scene file says, where it is TOML.
-    pub fn text(&self) -> &str {
-        self.panels.text()
-    }
-
     /// For what one film alone can do.
     pub fn refuse(&self, what: &str) -> Usage {
         let labels = quoted(self.panels.labels());

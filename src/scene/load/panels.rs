@@ -41,11 +41,6 @@ impl Panels {
         &self.layout.labels
     }
 
-    /// The file's text; empty where it is no TOML.
-    pub fn text(&self) -> &str {
-        self.text.as_deref().unwrap_or_default()
-    }
-
     /// Panels in a row.
     pub fn columns(&self) -> usize {
         self.layout.columns.map_or(self.labels().len(), |columns| columns as usize).max(1)
