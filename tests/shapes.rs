@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 use gonio::scene::Mesh;
 use gonio::scene::shape::{
     HeightGrid, Profile, ProfileKind, TEAPOT_PATCHES, cone, cuboid, cylinder, disk, fractal_heights, height_field,
-    lathe, quad, sphere_mesh, teapot, teapot_control_points, torus,
+    lathe, polar_disk, quad, sphere_mesh, teapot, teapot_control_points, torus,
 };
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -109,7 +109,7 @@ fn coarsest_closed_shapes_are_watertight() {
 
 #[test]
 fn open_shapes_have_their_area_and_face_up() {
-    let cases = [(quad([2.0, 3.0], 4), 6.0), (disk(2.0, 128), 4.0 * PI)];
+    let cases = [(quad([2.0, 3.0], 4), 6.0), (disk(2.0, 128), 4.0 * PI), (polar_disk(2.0, 128), 4.0 * PI)];
     for (mesh, expected) in cases {
         check(&mesh);
         assert!((area(&mesh) / expected - 1.0).abs() < 0.01);

@@ -35,7 +35,7 @@ pub use height_field::{HeightGrid, height_field};
 pub use lathe::{Profile, ProfileKind, lathe};
 pub use noise::fractal_heights;
 pub use normals::{BY_CREASE, compute_group_normals, compute_smooth_normals, repair_normals};
-pub use round::{cone, cylinder, disk, sphere_mesh, torus};
+pub use round::{cone, cylinder, disk, polar_disk, sphere_mesh, torus};
 pub use sphereflake::{SPHEREFLAKE_LEVELS, sphereflake};
 pub use teapot::{TEAPOT_PATCHES, teapot, teapot_control_points};
 pub use teapots::{TEAPOTS_MAX, field_size, teapot_field};

@@ -12,6 +12,19 @@ pub fn disk(radius: f64, segments: u32) -> Mesh {
     builder.finish()
 }
 
+/// The same disk with polar coordinates: u around it, counter-clockwise seen from above, v from its middle to the rim.
+pub fn polar_disk(radius: f64, segments: u32) -> Mesh {
+    let mut builder = Builder::new("disk");
+    let circle = circle(segments);
+    builder.add_grid(segments, 1, |i, j| {
+        let v = f64::from(1 - j);
+        let d = circle[i as usize] * radius * v;
+        let uv = DVec2::new(f64::from(i) / f64::from(segments), v);
+        Vertex { position: DVec3::new(d.x, 0.0, -d.y), normal: DVec3::Y, uv }
+    });
+    builder.finish()
+}
+
 /// A cylinder around the y axis from y = 0 to `height`; `segments` around; `capped`: with its two disks, else a tube.
 /// Side: u around, v up; caps: as `disk`.
 pub fn cylinder(radius: f64, height: f64, capped: bool, segments: u32) -> Mesh {

@@ -61,7 +61,11 @@ pub fn tessellate(table: &Reader, kind: ShapeKind) -> Result<Option<Mesh>> {
         ShapeKind::Sphere => shape::sphere_mesh(number("radius", 1.0)?, around()?),
         ShapeKind::Quad => shape::quad(size::<2>(table)?, along()?),
         ShapeKind::Box => shape::cuboid(size::<3>(table)?, along()?),
-        ShapeKind::Disk => shape::disk(number("radius", 1.0)?, around()?),
+        ShapeKind::Disk => {
+            let kinds = [("square", shape::disk as fn(f64, u32) -> Mesh), ("polar", shape::polar_disk)];
+            let disk = table.choice("coordinates", &kinds)?.unwrap_or(shape::disk);
+            disk(number("radius", 1.0)?, around()?)
+        }
         ShapeKind::Cylinder => shape::cylinder(number("radius", 1.0)?, number("height", 1.0)?, capped()?, around()?),
         ShapeKind::Cone => shape::cone(number("radius", 1.0)?, number("height", 1.0)?, capped()?, around()?),
         ShapeKind::Torus => {
