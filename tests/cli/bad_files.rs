@@ -48,7 +48,7 @@ fn broken_gltf_is_refused_with_the_place_in_the_document() {
         scene_refused(&folder, "bad.gltf", place, what);
     }
     folder.file("bad.gltf", GLTF.replace("data:;base64,AAAA", "gone.bin?"));
-    let args = ["render", "bad.gltf", "-o", "a.png", "--backend", "cpu"];
+    let args = ["render", "bad.gltf", "-o", "a.png", "--backend", "cpu", "--size", "8x6", "--spp", "1"];
     refused(&folder, &args, 74, "bad.gltf: buffers[0]: gone.bin?", "");
     let picture = r#""images": [{"uri": "gone.png"}], "textures": [{"source": 0}], "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}], "scene""#;
     let text = GLTF.replacen("\"scene\"", picture, 1).replace("\"indices\"", "\"material\": 0, \"indices\"");
