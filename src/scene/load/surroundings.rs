@@ -4,7 +4,7 @@
 use crate::scene::{Background, Environment, Rgb, Texture, TextureData, Transform, Wrap};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Texels of an image: one is 0.7 degrees high and wide.
 const SIZE: [u32; 2] = [512, 256];
@@ -38,12 +38,14 @@ impl Surroundings {
     /// As a background of `scale` times its radiance, turned by `to_world`. Unturned, it is made for a viewer at +z. Adds an
     /// image to `textures` where there is one.
     pub fn background(self, textures: &mut Vec<Texture>, scale: Rgb, to_world: Transform) -> Background {
-        let radiance: fn(DVec3) -> DVec3 = match self {
-            Self::Studio => studio,
-            Self::Sky => sky,
+        // Computed once, however many scenes stand in them: that takes as long as reading a small model.
+        static IMAGES: [OnceLock<Texture>; 2] = [OnceLock::new(), OnceLock::new()];
+        let image = match self {
+            Self::Studio => IMAGES[0].get_or_init(|| image(self.name(), studio)),
+            Self::Sky => IMAGES[1].get_or_init(|| image(self.name(), sky)),
             Self::White => return Background::flat(scale),
         };
-        let texture = super::texture_files::intern(textures, image(self.name(), radiance));
+        let texture = super::texture_files::intern(textures, image.clone());
         Background::Image(Environment { texture, scale, to_world })
     }
 }
