@@ -159,6 +159,9 @@ impl FromStr for Define {
     }
 }
 
+/// Names of parameters and their values.
+type Defines = Vec<(String, String)>;
+
 impl SceneFlags {
     /// Loads a scene without the changes of its panels and applies the flags. Prints the loader's warnings.
     pub fn load(&self, path: &Path) -> anyhow::Result<Scene> {
@@ -173,7 +176,7 @@ impl SceneFlags {
     }
 
     /// What the flags change: keys, parameters, and what a viewer lets one turn.
-    pub fn changes(&self) -> anyhow::Result<(Vec<load::Override>, Vec<(String, String)>, load::Controls)> {
+    pub fn changes(&self) -> anyhow::Result<(Vec<load::Override>, Defines, load::Controls)> {
         self.max_memory.into_iter().for_each(memory::set_limit);
         if let Some(root) = &self.root {
             let failed = |error| anyhow::Error::from(error).context(format!("--root {}", root.display()));

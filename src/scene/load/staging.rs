@@ -140,7 +140,7 @@ fn has_lamps(scene: &Scene) -> bool {
     };
     scene.objects.iter().any(|object| match (object.material, object.geometry) {
         (Some(id), _) => is_lamp(&id),
-        (None, Geometry::Mesh(mesh)) => scene.meshes[mesh.0 as usize].face_materials.iter().any(|id| is_lamp(id)),
+        (None, Geometry::Mesh(mesh)) => scene.meshes[mesh.0 as usize].face_materials.iter().any(&is_lamp),
         (None, Geometry::Sphere) => false,
     })
 }
