@@ -406,6 +406,60 @@ fn what_a_blend_emits_is_sampled_and_is_the_mean_of_its_parts() {
     assert_equal_means(plain, mean(&floor), 0.0, "a floor of .2 and 1 under a lamp of 0 and 4");
 }
 
+/// A floor of `material`, seen from above under a lamp and a sky, with something bright below.
+fn floor_of(material: Material, parts: &[Material]) -> Scene {
+    let light = object(Geometry::Sphere, Transform::scale(Vec3::splat(0.5)).then(Transform::translate(Vec3::Y * 2.0)));
+    let mut scene = lit_floor(Some((light, glow(3.0))), 1);
+    scene.background = Background::Gradient { bottom: Rgb::splat(0.5), top: Rgb::splat(0.25) };
+    scene.materials[0] = material;
+    scene.materials.extend_from_slice(parts);
+    scene
+}
+
+#[test]
+fn light_is_scattered_by_all_materials_of_a_blend_at_once() {
+    let blend = |weight| Model::Blend { weight, a: MaterialId(2), b: MaterialId(3) };
+    let of = |weight, a: &Material, b: &Material| {
+        mean(&floor_of(Material { model: blend(weight), ..matte(0.0) }, &[a.clone(), b.clone()]))
+    };
+    // As one material of their mean: drawn at random, black and white would have twice the noise.
+    let grey = mean(&floor_of(matte(0.25), &[]));
+    let both = of(0.25, &matte(0.0), &matte(1.0));
+    assert_equal_means(grey, both, 0.0, "3/4 black, 1/4 white");
+    assert!(both.error < 1.1 * grey.error, "{both:?} {grey:?}");
+
+    // Whatever the parts are: a metal whose lobe is narrow, a mirror, holes, panes, and blends of them.
+    let metal = Fresnel::Conductor { eta: Rgb::splat(0.2), k: Rgb::splat(3.0) };
+    let distribution = Distribution::TrowbridgeReitz;
+    let rough = Model::RoughConductor { distribution, alpha_u: 0.2, alpha_v: 0.2, fresnel: metal, compensate: false };
+    let pane = Some(Transparency::Interpolated { k_t: 0.7 });
+    let parts = [
+        matte(0.5),
+        model(rough),
+        model(Model::Mirror),
+        Material { opacity: 0.25, ..matte(0.9) },
+        Material { transparency: pane, ..matte(0.8) },
+        Material { two_sided: false, ..matte(0.6) },
+    ];
+    let alone: Vec<Mean> = parts.iter().map(|part| mean(&floor_of(part.clone(), &[]))).collect();
+    for (i, a) in parts.iter().enumerate() {
+        for (j, b) in parts.iter().enumerate().skip(i + 1) {
+            let wanted = Mean {
+                value: 0.7 * alone[i].value + 0.3 * alone[j].value,
+                error: 0.7 * alone[i].error + 0.3 * alone[j].error,
+            };
+            assert_equal_means(of(0.3, a, b), wanted, 0.0, &format!("{i} and {j}"));
+        }
+    }
+    let mut nested = floor_of(Material { model: blend(0.6), ..matte(0.0) }, &[parts[1].clone(), matte(0.0)]);
+    nested.materials[3].model = Model::Blend { weight: 0.5, a: MaterialId(4), b: MaterialId(5) };
+    nested.materials.extend([parts[3].clone(), parts[4].clone()]);
+    let shares = [(1, 0.4), (3, 0.3), (4, 0.3)];
+    let sum = |value: fn(&Mean) -> f64| shares.iter().map(|&(part, share)| share * value(&alone[part])).sum::<f64>();
+    let wanted = Mean { value: sum(|mean| mean.value), error: sum(|mean| mean.error) };
+    assert_equal_means(mean(&nested), wanted, 0.0, "a blend of a blend");
+}
+
 #[test]
 fn sides_have_a_material_each_and_holes_in_a_blend_are_holes_in_its_parts() {
     let mut scene = lit_floor(None, 0);

@@ -21,6 +21,7 @@ Closure closure_of(Material material) {
     closure.transmit_color = material.transmit_color;
     closure.absorption = material.absorption;
     closure.rank = material.rank;
+    closure.share = 1.0;
     unpack_block(material.block, closure);
     return closure;
 }

@@ -1,9 +1,7 @@
 // Disney's material (Burley 2012 and 2015) with the parameters of Mitsuba 3's `principled`: diffuse with retro-reflection, sheen,
 // GGX facets between metal and glass, a clear coat.
 //
-// In the record, where textures reach all of them: base colour `color`, roughness `m0`, metallic `extra`, index `eta`, anisotropic,
-// spec_trans and spec_tint `k`, sheen `w0`, sheen_tint `w1`, flatness `k_d`, clearcoat `k_s`, clearcoat_gloss `exponent`.
-// With spec_trans the frame's z leaves the outside.
+// The base colour is `color`; the other parameters have their own names. With spec_trans the frame's z leaves the outside.
 // Sources: Burley 2012, "Physically Based Shading at Disney"; Burley 2015, "Extending the Disney BRDF to a BSDF"; Jakob et al. 2022,
 // "Mitsuba 3", plugin `principled` (how the lobes are put together).
 #ifndef SHADING_PRINCIPLED_GLSL

@@ -21,6 +21,7 @@
 #include "shading/spectrum.glsl"
 #include "trace/spawn.glsl"
 #include "trace/surface.glsl"
+#include "transport/blend.glsl"
 #include "transport/emitter.glsl"
 #include "transport/limit.glsl"
 #include "transport/local.glsl"
@@ -28,6 +29,22 @@
 #include "transport/nested.glsl"
 #include "transport/mod.glsl"
 #include "transport/weight.glsl"
+
+// Below this density a weight would mean nothing.
+const float PDF_LEAST = 1.0e-12;
+
+// Where a path has met a surface.
+struct Meeting {
+    Hit hit;
+    // The surface with its normal map, and as it is without one.
+    Surface surface;
+    Surface bare;
+    // What a unit of radiance that the surface scatters adds to the sample: the path's throughput, or of a blend what it was
+    // before one of its materials was drawn.
+    Spectrum arriving;
+    // The path looks through what glows.
+    bool hidden;
+};
 
 // Adds what a ray that leaves the scene sees.
 void shade_escape(PathState path, SampleKey key) {
@@ -66,7 +83,8 @@ void shade_beyond(PathState path, SampleKey key, Surface surface) {
 }
 
 // Light of one emitter, chosen at random, that the surface sends on towards `wo`; its shadow ray is appended.
-void shade_emitter(PathState path, SampleKey key, Surface surface, Closure closure, Frame frame, vec3 wo) {
+void shade_emitter(PathState path, SampleKey key, Meeting meeting, Closure closure, Frame frame, vec3 wo) {
+    Surface surface = meeting.surface;
     uint chosen = 0u;
     if (header.emitter_count > 1u) {
         chosen = choose_emitter(sample_2d(key, DIMENSION_LIGHT_CHOICE));
@@ -79,16 +97,26 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Closure closu
     LightSample lit = sample_emitter(emitter, key, surface, u);
     vec3 wo_local = to_local(frame, wo);
     vec3 wi_local = to_local(frame, lit.wi);
-    if (spectrum_max(lit.radiance) <= 0.0 || !consistent(surface, wo, lit.wi, wo_local, wi_local)) {
+    bool blended = HAS_MODEL(MODEL_BLEND) && closure.share < 1.0;
+    if (spectrum_max(lit.radiance) <= 0.0 || (!blended && !consistent(surface, wo, lit.wi, wo_local, wi_local))) {
         return;
     }
-    Spectrum reflected = path.throughput * eval_closure(closure, wo_local, wi_local) * lit.radiance;
+    Scattering scattering = no_scattering();
+    if (HAS_MODEL(MODEL_BLEND) && blended) {
+        scattering = eval_blend(meeting.hit, meeting.bare, wo, lit.wi, meeting.hidden);
+    } else {
+        scattering.value = eval_closure(closure, wo_local, wi_local);
+    }
+    Spectrum reflected = meeting.arriving * scattering.value * lit.radiance;
     if (spectrum_max(reflected) <= 0.0) {
         return;
     }
     float weight = 1.0;
     if (lit.pdf_solid_angle > 0.0) {
-        weight = power_heuristic(lit.pdf_solid_angle, pdf_closure(closure, wo_local, wi_local));
+        if (!blended) {
+            scattering.pdf = pdf_closure(closure, wo_local, wi_local);
+        }
+        weight = power_heuristic(lit.pdf_solid_angle, scattering.pdf);
     }
     vec4 contribution = vec4(reflected.x, reflected.y, reflected.z, 0.0);
     Ray ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
@@ -101,7 +129,8 @@ void shade_emitter(PathState path, SampleKey key, Surface surface, Closure closu
 }
 
 // Lets the path go on into a direction of the surface.
-void scatter(PathState path, SampleKey key, Surface surface, Closure closure, Frame frame, vec3 wo) {
+void scatter(PathState path, SampleKey key, Meeting meeting, Closure closure, Frame frame, vec3 wo) {
+    Surface surface = meeting.surface;
     // The last ray can only meet what glows.
     if (!HAS_GLOW && path.depth + 1u >= header.max_depth) {
         return;
@@ -114,13 +143,22 @@ void scatter(PathState path, SampleKey key, Surface surface, Closure closure, Fr
         return;
     }
     PathState next = path;
-    next.throughput = spectrum_flush(path.throughput * bsdf.weight);
+    next.throughput = path.throughput * bsdf.weight;
     next.depth = path.depth + 1u;
     next.path_id = hash_combine(path.path_id, LOBE_SCATTER);
     next.coverage = 0.0;
     next.passed = 0.0;
     next.flags = 0u;
     next.pdf = (bsdf.flags & SAMPLE_DELTA) != 0u ? 0.0 : bsdf.pdf;
+    if (HAS_MODEL(MODEL_BLEND) && closure.share < 1.0 && next.pdf > 0.0) {
+        Scattering all = eval_blend(meeting.hit, meeting.bare, wo, wi, meeting.hidden);
+        if (all.pdf <= PDF_LEAST) {
+            return;
+        }
+        next.throughput = meeting.arriving * (all.value * rcp(all.pdf));
+        next.pdf = all.pdf;
+    }
+    next.throughput = spectrum_flush(next.throughput);
     if ((bsdf.flags & SAMPLE_TRANSMIT) != 0u && closure.model != MODEL_THIN_DIELECTRIC) {
         next.eta = path.eta * bsdf.eta;
         next.absorption = bsdf.wi.z < 0.0 ? closure.absorption : vec3(0.0);
@@ -144,12 +182,13 @@ void scatter(PathState path, SampleKey key, Surface surface, Closure closure, Fr
 }
 
 // Shades one hit: adds what glows, samples an emitter, and lets the path go on.
-// `key`: of the path. `named`: the surface's material, of which `closure` is what is met here.
-void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uint named, Closure closure) {
+// `key`: of the path. `bare`: the surface before `closure` was found there, with its normal map in `surface`.
+void shade_path(PathState incoming, SampleKey key, Hit hit, Surface bare, Surface surface, Closure closure) {
     PathState path = incoming;
     vec3 direction = path.ray.direction;
     const bool filtered = SHADOWS == SHADOWS_FILTERED;
-    if (HIDES_EMITTERS && path.depth == 0u && closure.emission != vec3(0.0)) {
+    bool hidden = HIDES_EMITTERS && path.depth == 0u;
+    if (HIDES_EMITTERS && hidden && closure.emission != vec3(0.0)) {
         path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
         path.ray = spawn_through(surface, direction, path.ray.t_max);
         push_path(path);
@@ -157,12 +196,9 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uin
     }
     if (HAS_PANES && closure.k_t > 0.0) {
         float own = own_weight(closure.flags, closure.k_t);
-        vec4 tint = pane_tint(closure);
-        // Each side as often as it is bright.
-        float share = spectrum_max(tint);
-        float through = div(share, own + share);
+        float through = pass_probability(closure);
         if (sample_1d(key, DIMENSION_PANE) < through) {
-            path.throughput *= tint * rcp(through);
+            path.throughput *= pane_tint(closure) * rcp(through);
             path.coverage *= closure.k_t * rcp(through);
             path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
             pass_surface(surface, hit.t, filtered, path);
@@ -181,20 +217,30 @@ void shade_path(PathState incoming, SampleKey key, Hit hit, Surface surface, uin
         float weight = 1.0;
         if (glows && path.pdf > 0.0) {
             vec3 from = path.ray.origin - direction * path.passed;
-            float sampled = pdf_emitter(from, direction, path.passed + hit.t, surface, named);
+            float sampled = pdf_emitter(from, direction, path.passed + hit.t, surface, bare.material);
             weight = met_weight(path, sampled);
         }
         Spectrum seen = path.throughput * (own_light * weight);
         add_limited(path.slot, path.depth, seen, path.coverage, dither_hash(key, DITHER_SURFACE));
     }
-    if (path.depth >= header.max_depth || is_hidden_back(surface, closure, wo)) {
+    if (path.depth >= header.max_depth) {
+        return;
+    }
+    bool blended = HAS_MODEL(MODEL_BLEND) && closure.share < 1.0;
+    bool dark = is_hidden_back(surface, closure, wo);
+    if (dark && !blended) {
         return;
     }
     Frame frame = shading_frame(surface, closure, wo);
-    if (header.emitter_count > 0u && !is_delta(closure)) {
-        shade_emitter(path, key, surface, closure, frame, wo);
+    Meeting meeting = Meeting(hit, surface, bare, path.throughput, hidden);
+    if (HAS_MODEL(MODEL_BLEND) && blended) meeting.arriving = incoming.throughput;
+    // Light samples are scattered by all materials of a blend, whichever was drawn.
+    if (header.emitter_count > 0u && (blended || !is_delta(closure))) {
+        shade_emitter(path, key, meeting, closure, frame, wo);
     }
-    scatter(path, key, surface, closure, frame, wo);
+    if (!dark) {
+        scatter(path, key, meeting, closure, frame, wo);
+    }
 }
 
 #endif

@@ -15,6 +15,9 @@
 #include "trace/tangent.glsl"
 #include "transport/mod.glsl"
 
+// In the place of a leaf's number: one of them, at random.
+const uint DRAWN = 0xffffffffu;
+
 // Applies the textures of `material` to `closure`, at `surface`, found for `hit` along `direction` (unit); a normal or bump
 // map turns `surface.normal`. One loop with one place that fetches, as each place is inlined and costs compile time.
 void apply_textures(Material material, vec3 direction, Hit hit, inout Closure closure, inout Surface surface) {
@@ -66,17 +69,18 @@ void apply_textures(Material material, vec3 direction, Hit hit, inout Closure cl
     }
 }
 
-// The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour. Of a blend it is
-// one that is none, drawn by the weights, (1 - `blend`) of the first and `blend` of the second, or by the side that is seen;
-// `surface.material` names it.
-// `key`: of the path, which draws with `dimension` at one surface at most.
-Closure resolve_material(vec3 direction, Hit hit, SampleKey key, uint dimension, inout Surface surface) {
+// One material of a blend: number `leaf`, or if that is `DRAWN` the one that `u` draws, 0..1 excluding 1. `share` is how much of
+// the surface it is, 0 for the side that is not seen. `dimension`: as in `resolve_material`.
+Closure resolve_part(vec3 direction, Hit hit, uint leaf, float u, uint dimension, inout Surface surface) {
     Material material = load_material(surface.material);
     // Drivers leave out what the one model of a group of paths excludes.
     if (SHADE_MODEL != INVALID && dimension == DIMENSION_LEAF) material.model = SHADE_MODEL;
     Closure closure = closure_of(material);
-    float u = HAS_MODEL(MODEL_BLEND) && closure.model == MODEL_BLEND ? sample_1d(key, dimension) : 0.0;
+    uint leaf_count = closure.leaf_count;
+    float rest = u;
+    uint number = leaf;
     float covered = 1.0;
+    float share = 1.0;
     for (uint level = 0u; level < MAX_LEAVES; level++) {
         closure.color *= surface.color;
         if (HAS_MODEL(MODEL_EMISSIVE) && closure.model == MODEL_EMISSIVE) {
@@ -93,16 +97,34 @@ Closure resolve_material(vec3 direction, Hit hit, SampleKey key, uint dimension,
         }
         covered = 1.0 - closure.k_t;
         bool by_side = (closure.flags & MATERIAL_BY_SIDE) != 0u;
+        bool behind = dot3(surface.normal_geometric, direction) > 0.0;
         float weight = clamp_(closure.blend, 0.0, 1.0);
-        bool second = by_side ? dot3(surface.normal_geometric, direction) > 0.0 : u < weight;
+        bool drawn = by_side ? behind : rest < weight;
+        bool second = leaf == DRAWN ? drawn : number >= closure.first_leaves;
+        float by_weight = second ? weight : 1.0 - weight;
+        float seen = second == behind ? 1.0 : 0.0;
+        share *= by_side ? seen : by_weight;
+        number = second ? number - closure.first_leaves : number;
         // What is left of u is as random again.
-        float rest = second ? div(u, weight) : div(u - weight, 1.0 - weight);
-        u = by_side ? u : rest;
+        float left = second ? div(rest, weight) : div(rest - weight, 1.0 - weight);
+        rest = by_side ? rest : left;
         surface.material = second ? closure.first_part + 1u : closure.first_part;
         material = load_material(surface.material);
         closure = closure_of(material);
     }
+    closure.leaf_count = leaf_count;
+    closure.share = share;
     return closure;
+}
+
+// The material of `surface`, found for `hit` along `direction` (unit), with its textures and vertex colour. Of a blend it is
+// one that is none, drawn by the weights, (1 - `blend`) of the first and `blend` of the second, or by the side that is seen;
+// `surface.material` names it.
+// `key`: of the path, which draws with `dimension` at one surface at most.
+Closure resolve_material(vec3 direction, Hit hit, SampleKey key, uint dimension, inout Surface surface) {
+    bool blended = HAS_MODEL(MODEL_BLEND) && load_material(surface.material).model == MODEL_BLEND;
+    float u = blended ? sample_1d(key, dimension) : 0.0;
+    return resolve_part(direction, hit, DRAWN, u, dimension, surface);
 }
 
 #endif

@@ -50,7 +50,7 @@ void shade(PathState incoming, Hit hit) {
         return;
     }
     Surface surface = surface_at(path.ray, hit);
-    uint named = surface.material;
+    Surface bare = surface;
     Closure closure = resolve_material(path.ray.direction, hit, key, DIMENSION_LEAF, surface);
     if (HAS_SHADOWLESS && HAS_EMITTER(EMITTER_ENVIRONMENT)) {
         shade_beyond(path, key, surface);
@@ -63,10 +63,10 @@ void shade(PathState incoming, Hit hit) {
     if (HAS_AOVS && path.path_id == 0u) {
         Spectrum albedo = albedo_closure(closure);
         vec3 albedo_rgb = vec3(albedo.x, albedo.y, albedo.z);
-        add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, named);
+        add_aov(path, hit.t, surface.normal, albedo_rgb, surface.object, bare.material);
     }
     if (INTEGRATOR == INTEGRATOR_PATH) {
-        shade_path(path, key, hit, surface, named, closure);
+        shade_path(path, key, hit, bare, surface, closure);
         return;
     }
     uint flags = HAS_FACETS && INTEGRATOR == INTEGRATOR_LOCAL ? load_instance(hit.instance).flags : 0u;

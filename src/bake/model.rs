@@ -266,7 +266,7 @@ fn parts(material: &scene::Material) -> Option<[usize; 2]> {
     }
 }
 
-/// Puts copies of each blend's two materials one after the other at the end of `baked`, where the blend's `table` says, with
+/// Puts copies of each blend's two materials one after the other at the end of `baked`, where the blend's `first_part` says, with
 /// what the blend itself emits; the blend's own emission becomes what it shows on average.
 pub fn bake_blends(materials: &[scene::Material], baked: &mut Vec<Baked>) -> Result<(), BakeError> {
     for (index, material) in materials.iter().enumerate() {
@@ -311,6 +311,8 @@ fn place_parts(materials: &[scene::Material], index: usize, place: usize, baked:
         place_parts(materials, child, first + k, baked);
     }
     let part = |k: usize| baked[first + k].closure;
+    let leaves = |k: usize| part(k).leaf_count.max(1);
+    let (first_leaves, leaf_count) = (leaves(0), leaves(0) + leaves(1));
     let shown = |k: usize| part(k).emission * own_weight(part(k).flags, part(k).k_t);
     let second = if blend.flags & MATERIAL_BY_SIDE != 0 { 0.5 } else { blend.blend.clamp(0.0, 1.0) };
     let emission = shown(0) * (1.0 - second) + shown(1) * second;
@@ -319,6 +321,7 @@ fn place_parts(materials: &[scene::Material], index: usize, place: usize, baked:
     let two_sided = shines_back(part(0)) || shines_back(part(1));
     let closure = &mut baked[place].closure;
     closure.first_part = first as u32;
+    (closure.first_leaves, closure.leaf_count) = (first_leaves, leaf_count);
     closure.emission = emission;
     closure.flags &= !MATERIAL_EMIT_ONE_SIDED;
     closure.flags |= if two_sided { 0 } else { MATERIAL_EMIT_ONE_SIDED };

@@ -265,8 +265,8 @@ pub struct MeasuredBlock {
 pub struct BlendBlock {
     pub blend: f32,
     pub first_part: u32,
-    pub _pad0: u32,
-    pub _pad1: u32,
+    pub first_leaves: u32,
+    pub leaf_count: u32,
 }
 
 /// Parameters of `MODEL_TABULATED`.

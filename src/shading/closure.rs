@@ -64,6 +64,11 @@ pub struct Closure {
     /// Of a blend: how much of its second material, and the first of its two in the array of materials.
     pub blend: f32,
     pub first_part: u32,
+    /// Of a blend: how many materials the first of its two is made of in the end, and both together.
+    pub first_leaves: u32,
+    pub leaf_count: u32,
+    /// How much of the surface it is, 0..1: 1 unless it is part of a blend.
+    pub share: f32,
     /// Beer coefficient inside a dielectric, per scene unit.
     pub absorption: Vec3,
     /// Rank of the medium behind a clear body's surface, 0 if it has none (`shading/interior`).
@@ -87,6 +92,7 @@ pub fn closure_of(scene: &SceneView, material: &Material) -> Closure {
         transmit_color: material.transmit_color,
         absorption: material.absorption,
         rank: material.rank,
+        share: 1.0,
         ..Closure::default()
     };
     unpack_block(scene, material.block, &mut closure);

@@ -1,4 +1,4 @@
-//! Rough diffuse reflection: V-cavities whose slope angle has the standard deviation sigma (`extra`, radians), the
+//! Rough diffuse reflection: V-cavities whose slope angle has the standard deviation `sigma` (radians), the
 //! qualitative form: f = k_d O_d / pi (A + B max(0, cos(phi_i - phi_o)) sin alpha tan beta), without interreflection.
 //! Source: Oren and Nayar 1994, "Generalization of Lambert's Reflectance Model", equation 30.
 

@@ -7,6 +7,7 @@
 
 pub mod area_light;
 pub mod begin;
+pub mod blend;
 pub mod emitter;
 pub mod faceted;
 pub mod film;

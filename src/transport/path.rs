@@ -8,6 +8,7 @@
 //! Shadow rays do not pass a pane, so what is seen through one has weight 1 however it is lit; filtered shadow rays do
 //! (`transport/shadow`), and a ray that passes one stays a sample of the direction it was drawn with.
 
+use super::blend::{eval_blend, no_scattering, pass_probability};
 use super::emitter::{casts_shadow, choose_emitter, pdf_emitter, sample_emitter};
 use super::limit::{add_light, add_limited};
 use super::local::{SHADOW_END, emitted, is_hidden_back, shading_frame};
@@ -28,12 +29,29 @@ use crate::shading::environment::{background, pdf_environment};
 use crate::shading::frame::{Frame, to_local, to_world};
 use crate::shading::interior::cross_interface;
 use crate::shading::material::{eval_closure, is_delta, own_weight, pane_tint, pdf_closure, sample_closure};
-use crate::shading::math::{div, rcp};
+use crate::shading::math::rcp;
 use crate::shading::sampling::{SampleKey, dither_hash, hash_combine, sample_1d, sample_2d};
-use crate::shading::spectrum::{spectrum_flush, spectrum_from_rgb, spectrum_max};
+use crate::shading::spectrum::{Spectrum, spectrum_flush, spectrum_from_rgb, spectrum_max};
 use crate::trace::spawn::{spawn_ray, spawn_through};
 use crate::trace::surface::Surface;
 use glam::{Vec2, Vec3, Vec4};
+
+/// Below this density a weight would mean nothing.
+const PDF_LEAST: f32 = 1.0e-12;
+
+/// Where a path has met a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Meeting {
+    pub hit: Hit,
+    /// The surface with its normal map, and as it is without one.
+    pub surface: Surface,
+    pub bare: Surface,
+    /// What a unit of radiance that the surface scatters adds to the sample: the path's throughput, or of a blend what it was
+    /// before one of its materials was drawn.
+    pub arriving: Spectrum,
+    /// The path looks through what glows.
+    pub hidden: bool,
+}
 
 /// Adds what a ray that leaves the scene sees.
 pub fn shade_escape(scene: &SceneView, path: &PathState, key: SampleKey, queues: &mut Queues) {
@@ -76,12 +94,13 @@ fn shade_emitter(
     scene: &SceneView,
     path: &PathState,
     key: SampleKey,
-    surface: &Surface,
+    meeting: &Meeting,
     closure: &Closure,
     frame: Frame,
     wo: Vec3,
     queues: &mut Queues,
 ) {
+    let surface = &meeting.surface;
     let mut chosen = 0;
     if scene.header.emitter_count > 1 {
         chosen = choose_emitter(scene, sample_2d(key, DIMENSION_LIGHT_CHOICE));
@@ -94,16 +113,26 @@ fn shade_emitter(
     let lit = sample_emitter(scene, &emitter, key, surface, u);
     let wo_local = to_local(frame, wo);
     let wi_local = to_local(frame, lit.wi);
-    if spectrum_max(lit.radiance) <= 0.0 || !consistent(surface, wo, lit.wi, wo_local, wi_local) {
+    let blended = closure.share < 1.0;
+    if spectrum_max(lit.radiance) <= 0.0 || (!blended && !consistent(surface, wo, lit.wi, wo_local, wi_local)) {
         return;
     }
-    let reflected = path.throughput * eval_closure(scene, closure, wo_local, wi_local) * lit.radiance;
+    let mut scattering = no_scattering();
+    if blended {
+        scattering = eval_blend(scene, &meeting.hit, &meeting.bare, wo, lit.wi, meeting.hidden);
+    } else {
+        scattering.value = eval_closure(scene, closure, wo_local, wi_local);
+    }
+    let reflected = meeting.arriving * scattering.value * lit.radiance;
     if spectrum_max(reflected) <= 0.0 {
         return;
     }
     let mut weight = 1.0;
     if lit.pdf_solid_angle > 0.0 {
-        weight = power_heuristic(lit.pdf_solid_angle, pdf_closure(scene, closure, wo_local, wi_local));
+        if !blended {
+            scattering.pdf = pdf_closure(scene, closure, wo_local, wi_local);
+        }
+        weight = power_heuristic(lit.pdf_solid_angle, scattering.pdf);
     }
     let contribution = Vec4::new(reflected.x, reflected.y, reflected.z, 0.0);
     let ray = spawn_ray(surface, lit.wi, lit.distance * SHADOW_END);
@@ -122,12 +151,13 @@ fn scatter(
     scene: &SceneView,
     path: &PathState,
     key: SampleKey,
-    surface: &Surface,
+    meeting: &Meeting,
     closure: &Closure,
     frame: Frame,
     wo: Vec3,
     queues: &mut Queues,
 ) {
+    let surface = &meeting.surface;
     // The last ray can only meet what glows.
     if !scene.features.has_glow && path.depth + 1 >= scene.header.max_depth {
         return;
@@ -140,13 +170,22 @@ fn scatter(
         return;
     }
     let mut next = *path;
-    next.throughput = spectrum_flush(path.throughput * bsdf.weight);
+    next.throughput = path.throughput * bsdf.weight;
     next.depth = path.depth + 1;
     next.path_id = hash_combine(path.path_id, LOBE_SCATTER);
     next.coverage = 0.0;
     next.passed = 0.0;
     next.flags = 0;
     next.pdf = if (bsdf.flags & SAMPLE_DELTA) != 0 { 0.0 } else { bsdf.pdf };
+    if closure.share < 1.0 && next.pdf > 0.0 {
+        let all = eval_blend(scene, &meeting.hit, &meeting.bare, wo, wi, meeting.hidden);
+        if all.pdf <= PDF_LEAST {
+            return;
+        }
+        next.throughput = meeting.arriving * (all.value * rcp(all.pdf));
+        next.pdf = all.pdf;
+    }
+    next.throughput = spectrum_flush(next.throughput);
     if (bsdf.flags & SAMPLE_TRANSMIT) != 0 && closure.model != MODEL_THIN_DIELECTRIC {
         next.eta = path.eta * bsdf.eta;
         next.absorption = if bsdf.wi.z < 0.0 { closure.absorption } else { Vec3::ZERO };
@@ -170,22 +209,23 @@ fn scatter(
 }
 
 /// Shades one hit: adds what glows, samples an emitter, and lets the path go on.
-/// `key`: of the path. `named`: the surface's material, of which `closure` is what is met here.
+/// `key`: of the path. `bare`: the surface before `closure` was found there, with its normal map in `surface`.
 #[allow(clippy::too_many_arguments, reason = "to read like its twin")]
 pub fn shade_path(
     scene: &SceneView,
     incoming: &PathState,
     key: SampleKey,
     hit: &Hit,
+    bare: &Surface,
     surface: &Surface,
-    named: u32,
     closure: &Closure,
     queues: &mut Queues,
 ) {
     let mut path = *incoming;
     let direction = path.ray.direction;
     let filtered = scene.features.shadows == SHADOWS_FILTERED;
-    if scene.features.hides_emitters && path.depth == 0 && closure.emission != Vec3::ZERO {
+    let hidden = scene.features.hides_emitters && path.depth == 0;
+    if hidden && closure.emission != Vec3::ZERO {
         path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
         path.ray = spawn_through(surface, direction, path.ray.t_max);
         push_path(queues, path);
@@ -193,12 +233,9 @@ pub fn shade_path(
     }
     if closure.k_t > 0.0 {
         let own = own_weight(closure.flags, closure.k_t);
-        let tint = pane_tint(closure);
-        // Each side as often as it is bright.
-        let share = spectrum_max(tint);
-        let through = div(share, own + share);
+        let through = pass_probability(closure);
         if sample_1d(key, DIMENSION_PANE) < through {
-            path.throughput *= tint * rcp(through);
+            path.throughput *= pane_tint(closure) * rcp(through);
             path.coverage *= closure.k_t * rcp(through);
             path.path_id = hash_combine(path.path_id, LOBE_THROUGH);
             pass_surface(scene, surface, hit.t, filtered, &mut path);
@@ -217,19 +254,29 @@ pub fn shade_path(
         let mut weight = 1.0;
         if glows && path.pdf > 0.0 {
             let from = path.ray.origin - direction * path.passed;
-            let sampled = pdf_emitter(scene, from, direction, path.passed + hit.t, surface, named);
+            let sampled = pdf_emitter(scene, from, direction, path.passed + hit.t, surface, bare.material);
             weight = met_weight(scene, &path, sampled);
         }
         let seen = path.throughput * (own_light * weight);
         let dither = dither_hash(key, DITHER_SURFACE);
         add_limited(scene, path.slot, path.depth, seen, path.coverage, dither, queues);
     }
-    if path.depth >= scene.header.max_depth || is_hidden_back(surface, closure, wo) {
+    if path.depth >= scene.header.max_depth {
+        return;
+    }
+    let blended = closure.share < 1.0;
+    let dark = is_hidden_back(surface, closure, wo);
+    if dark && !blended {
         return;
     }
     let frame = shading_frame(scene, surface, closure, wo);
-    if scene.header.emitter_count > 0 && !is_delta(closure) {
-        shade_emitter(scene, &path, key, surface, closure, frame, wo, queues);
+    let arriving = if blended { incoming.throughput } else { path.throughput };
+    let meeting = Meeting { hit: *hit, surface: *surface, bare: *bare, arriving, hidden };
+    // Light samples are scattered by all materials of a blend, whichever was drawn.
+    if scene.header.emitter_count > 0 && (blended || !is_delta(closure)) {
+        shade_emitter(scene, &path, key, &meeting, closure, frame, wo, queues);
     }
-    scatter(scene, &path, key, surface, closure, frame, wo, queues);
+    if !dark {
+        scatter(scene, &path, key, &meeting, closure, frame, wo, queues);
+    }
 }

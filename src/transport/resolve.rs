@@ -15,6 +15,9 @@ use crate::trace::surface::Surface;
 use crate::trace::tangent::gradients_at;
 use glam::{Vec2, Vec3};
 
+/// In the place of a leaf's number: one of them, at random.
+pub const DRAWN: u32 = 0xffff_ffff;
+
 /// Applies the textures of `material` to `closure`, at `surface`, found for `hit` along `direction` (unit); a normal or bump
 /// map turns `surface.normal`. One loop with one place that fetches, as each place is inlined and costs compile time.
 fn apply_textures(
@@ -79,10 +82,29 @@ pub fn resolve_material(
     dimension: u32,
     surface: &mut Surface,
 ) -> Closure {
+    let blended = load_material(scene, surface.material).model == MODEL_BLEND;
+    let u = if blended { sample_1d(key, dimension) } else { 0.0 };
+    resolve_part(scene, direction, hit, DRAWN, u, dimension, surface)
+}
+
+/// One material of a blend: number `leaf`, or if that is `DRAWN` the one that `u` draws, 0..1 excluding 1. `share` is how much of
+/// the surface it is, 0 for the side that is not seen. `dimension`: as in `resolve_material`.
+pub fn resolve_part(
+    scene: &SceneView,
+    direction: Vec3,
+    hit: &Hit,
+    leaf: u32,
+    u: f32,
+    _dimension: u32,
+    surface: &mut Surface,
+) -> Closure {
     let mut material = load_material(scene, surface.material);
     let mut closure = closure_of(scene, &material);
-    let mut u = if closure.model == MODEL_BLEND { sample_1d(key, dimension) } else { 0.0 };
+    let leaf_count = closure.leaf_count;
+    let mut rest = u;
+    let mut number = leaf;
     let mut covered = 1.0;
+    let mut share = 1.0;
     for level in 0..MAX_LEAVES {
         closure.color *= surface.color;
         if closure.model == MODEL_EMISSIVE {
@@ -99,14 +121,22 @@ pub fn resolve_material(
         }
         covered = 1.0 - closure.k_t;
         let by_side = (closure.flags & MATERIAL_BY_SIDE) != 0;
+        let behind = dot3(surface.normal_geometric, direction) > 0.0;
         let weight = clamp_(closure.blend, 0.0, 1.0);
-        let second = if by_side { dot3(surface.normal_geometric, direction) > 0.0 } else { u < weight };
+        let drawn = if by_side { behind } else { rest < weight };
+        let second = if leaf == DRAWN { drawn } else { number >= closure.first_leaves };
+        let by_weight = if second { weight } else { 1.0 - weight };
+        let seen = if second == behind { 1.0 } else { 0.0 };
+        share *= if by_side { seen } else { by_weight };
+        number = if second { number.wrapping_sub(closure.first_leaves) } else { number };
         // What is left of u is as random again.
-        let rest = if second { div(u, weight) } else { div(u - weight, 1.0 - weight) };
-        u = if by_side { u } else { rest };
+        let left = if second { div(rest, weight) } else { div(rest - weight, 1.0 - weight) };
+        rest = if by_side { rest } else { left };
         surface.material = if second { closure.first_part + 1 } else { closure.first_part };
         material = load_material(scene, surface.material);
         closure = closure_of(scene, &material);
     }
+    closure.leaf_count = leaf_count;
+    closure.share = share;
     closure
 }

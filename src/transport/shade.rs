@@ -51,7 +51,7 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
         return;
     }
     let mut surface = surface_at(scene, &path.ray, hit);
-    let named = surface.material;
+    let bare = surface;
     let mut closure = resolve_material(scene, path.ray.direction, hit, key, DIMENSION_LEAF, &mut surface);
     if scene.features.has_shadowless && scene.header.environment_density > 0.0 {
         shade_beyond(scene, &path, key, &surface, queues);
@@ -62,10 +62,10 @@ pub fn shade(scene: &SceneView, incoming: &PathState, hit: &Hit, queues: &mut Qu
     if scene.features.has_aovs && path.path_id == 0 {
         let albedo = albedo_closure(&closure);
         let albedo_rgb = Vec3::new(albedo.x, albedo.y, albedo.z);
-        add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, named);
+        add_aov(queues, &path, hit.t, surface.normal, albedo_rgb, surface.object, bare.material);
     }
     if scene.features.integrator == INTEGRATOR_PATH {
-        shade_path(scene, &path, key, hit, &surface, named, &closure, queues);
+        shade_path(scene, &path, key, hit, &bare, &surface, &closure, queues);
         return;
     }
     let local = scene.features.integrator == INTEGRATOR_LOCAL;

@@ -60,6 +60,9 @@ Closure make_closure(uint model) {
     c.clearcoat_gloss = argument(6u) * 0.0005;
     c.blend = argument(15u);
     c.first_part = 0u;
+    c.first_leaves = 0u;
+    c.leaf_count = 0u;
+    c.share = 1.0;
     c.absorption = vec3(0.0);
     c.rank = 0u;
     c.emission = vec3(0.0);
