@@ -211,7 +211,7 @@ fn materials_that_mean_nothing_are_refused() {
     let cases: &[(String, &str)] = &[
         (
             "model = \"cook-torrence\"".into(),
-            "a.toml:7:9: \"model\" must be \"lambert\", \"phong\", \"blinn-phong\", \"cook-torrance\", \"mirror\", \"dielectric\", \"emissive\", \"oren-nayar\", \"ward\", \"ashikhmin-shirley\", \"kelemen\", \"conductor\", \"rough-conductor\", \"rough-dielectric\", \"thin-dielectric\", \"plastic\", \"rough-plastic\", \"principled\", \"measured\", \"null\" or \"blend\", found \"cook-torrence\"; did you mean \"cook-torrance\"?",
+            "a.toml:7:9: \"model\" must be \"lambert\", \"phong\", \"blinn-phong\", \"cook-torrance\", \"mirror\", \"dielectric\", \"emissive\", \"oren-nayar\", \"eon\", \"ward\", \"ashikhmin-shirley\", \"kelemen\", \"conductor\", \"rough-conductor\", \"rough-dielectric\", \"thin-dielectric\", \"plastic\", \"rough-plastic\", \"principled\", \"measured\", \"null\" or \"blend\", found \"cook-torrence\"; did you mean \"cook-torrance\"?",
         ),
         ("color = [1, 2, 3]".into(), "a.toml:7:9: \"color\" is a reflectance, at most 1, found 3"),
         ("color = \"octarine\"".into(), "a.toml:7:9: \"color\" must be a colour >= 0, found the string \"octarine\""),

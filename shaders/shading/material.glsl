@@ -15,6 +15,7 @@
 #include "shading/bsdf.glsl"
 #include "shading/cook_torrance.glsl"
 #include "shading/delta.glsl"
+#include "shading/eon.glsl"
 #include "shading/fresnel.glsl"
 #include "shading/kelemen.glsl"
 #include "shading/lambert.glsl"
@@ -52,6 +53,7 @@ Spectrum eval_closure(Closure closure, vec3 wo, vec3 wi) {
     ARM(MODEL_PRINCIPLED, eval_principled(closure, wo, wi))
     ARM(MODEL_MEASURED, eval_measured(closure, wo, wi))
     ARM(MODEL_TABULATED, eval_tabulated(closure, wo, wi))
+    ARM(MODEL_EON, eval_eon(closure, wo, wi))
     default: break;
     }
     return spectrum_zero();
@@ -75,6 +77,7 @@ float pdf_closure(Closure closure, vec3 wo, vec3 wi) {
     ARM(MODEL_PRINCIPLED, pdf_principled(closure, wo, wi))
     ARM(MODEL_MEASURED, pdf_measured(closure, wo, wi))
     ARM(MODEL_TABULATED, pdf_tabulated(closure, wo, wi))
+    ARM(MODEL_EON, pdf_eon(closure, wo, wi))
     default: break;
     }
     return 0.0;
@@ -95,6 +98,7 @@ DirectionSample sample_direction(Closure closure, vec3 wo, vec2 u, float u_lobe)
     ARM(MODEL_ROUGH_PLASTIC, sample_rough_plastic(closure, wo, u, u_lobe))
     ARM(MODEL_MEASURED, sample_measured(closure, wo, u, u_lobe))
     ARM(MODEL_TABULATED, sample_tabulated(closure, wo, u, u_lobe))
+    ARM(MODEL_EON, sample_eon(closure, wo, u, u_lobe))
     default: break;
     }
     return no_direction();
@@ -178,7 +182,8 @@ Spectrum albedo_closure(Closure closure) {
     vec3 rgb = vec3(0.0);
     switch (closure.model) {
     case MODEL_LAMBERT:
-    case MODEL_OREN_NAYAR: rgb = diffuse; break;
+    case MODEL_OREN_NAYAR:
+    case MODEL_EON: rgb = diffuse; break;
     case MODEL_PHONG:
     case MODEL_BLINN_PHONG:
     case MODEL_WARD:

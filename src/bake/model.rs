@@ -84,6 +84,10 @@ fn bake_model(
             baked.model = MODEL_OREN_NAYAR;
             baked.sigma = *sigma;
         }
+        Model::Eon { roughness } => {
+            baked.model = MODEL_EON;
+            baked.roughness = *roughness;
+        }
         Model::Phong { exponent, lafortune } => {
             baked.model = MODEL_PHONG;
             baked.exponent = *exponent;

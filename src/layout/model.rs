@@ -32,6 +32,8 @@ pub const MODEL_NULL: u32 = 19;
 pub const MODEL_BLEND: u32 = 20;
 /// Measured for directions of light (`shading/tabulated`).
 pub const MODEL_TABULATED: u32 = 21;
+/// Oren and Nayar's rough diffuse reflection without loss of energy.
+pub const MODEL_EON: u32 = 22;
 
 /// What surfaces that reflect lights have in common. 40 bytes.
 #[repr(C)]
@@ -275,6 +277,15 @@ pub struct BlendBlock {
 pub struct TabulatedBlock {
     pub lit: Lit,
     pub table: u32,
+    pub _pad0: u32,
+}
+
+/// Parameters of `MODEL_EON`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct EonBlock {
+    pub lit: Lit,
+    pub roughness: f32,
     pub _pad0: u32,
 }
 

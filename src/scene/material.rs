@@ -108,6 +108,10 @@ pub enum Model {
     OrenNayar {
         sigma: f32,
     },
+    /// Rough diffuse reflection that loses no energy; `roughness`: 0 (Lambert's) to 1.
+    Eon {
+        roughness: f32,
+    },
     /// (V.R)^n; `lafortune` normalises the lobe, else it is as printed in 1975; None: normalised under path tracing only.
     Phong {
         exponent: f32,

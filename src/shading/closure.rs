@@ -50,8 +50,9 @@ pub struct Closure {
     pub table: u32,
     /// Of a plastic: the coat's diffuse reflectance from inside.
     pub inner_reflectance: f32,
-    /// A principled material's shares, 0..1 each.
+    /// Roughness of a principled material, and of `MODEL_EON`, 0..1.
     pub roughness: f32,
+    /// A principled material's shares, 0..1 each.
     pub metallic: f32,
     pub anisotropic: f32,
     pub spec_trans: f32,

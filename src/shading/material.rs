@@ -7,9 +7,9 @@
 
 use crate::layout::{
     MATERIAL_FILTERED, MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE,
-    MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR, MODEL_NULL,
-    MODEL_OREN_NAYAR, MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC,
-    MODEL_ROUGH_PLASTIC, MODEL_TABULATED, MODEL_THIN_DIELECTRIC, MODEL_WARD, SceneView,
+    MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_EON, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR,
+    MODEL_NULL, MODEL_OREN_NAYAR, MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR,
+    MODEL_ROUGH_DIELECTRIC, MODEL_ROUGH_PLASTIC, MODEL_TABULATED, MODEL_THIN_DIELECTRIC, MODEL_WARD, SceneView,
 };
 use crate::shading::ashikhmin::{eval_ashikhmin, pdf_ashikhmin, sample_ashikhmin};
 use crate::shading::blinn_phong::{eval_blinn_phong, pdf_blinn_phong, sample_blinn_phong};
@@ -17,6 +17,7 @@ use crate::shading::bsdf::{BsdfSample, finish_sample, no_sample};
 use crate::shading::closure::Closure;
 use crate::shading::cook_torrance::{eval_cook_torrance, pdf_cook_torrance, sample_cook_torrance};
 use crate::shading::delta::{sample_conductor, sample_dielectric, sample_mirror, sample_null, sample_thin_dielectric};
+use crate::shading::eon::{eval_eon, pdf_eon, sample_eon};
 use crate::shading::fresnel::fresnel_closure;
 use crate::shading::kelemen::{eval_kelemen, pdf_kelemen, sample_kelemen};
 use crate::shading::lambert::{eval_lambert, pdf_lambert, sample_lambert};
@@ -56,6 +57,7 @@ pub fn eval_closure(scene: &SceneView, closure: &Closure, wo: Vec3, wi: Vec3) ->
         MODEL_PRINCIPLED => eval_principled(closure, wo, wi),
         MODEL_MEASURED => eval_measured(scene, closure, wo, wi),
         MODEL_TABULATED => eval_tabulated(scene, closure, wo, wi),
+        MODEL_EON => eval_eon(closure, wo, wi),
         _ => spectrum_zero(),
     }
 }
@@ -79,6 +81,7 @@ pub fn pdf_closure(scene: &SceneView, closure: &Closure, wo: Vec3, wi: Vec3) -> 
         MODEL_PRINCIPLED => pdf_principled(closure, wo, wi),
         MODEL_MEASURED => pdf_measured(scene, closure, wo, wi),
         MODEL_TABULATED => pdf_tabulated(scene, closure, wo, wi),
+        MODEL_EON => pdf_eon(closure, wo, wi),
         _ => 0.0,
     }
 }
@@ -99,6 +102,7 @@ pub fn sample_direction(scene: &SceneView, closure: &Closure, wo: Vec3, u: Vec2,
         MODEL_ROUGH_PLASTIC => sample_rough_plastic(scene, closure, wo, u, u_lobe),
         MODEL_MEASURED => sample_measured(scene, closure, wo, u, u_lobe),
         MODEL_TABULATED => sample_tabulated(scene, closure, wo, u, u_lobe),
+        MODEL_EON => sample_eon(closure, wo, u, u_lobe),
         _ => no_direction(),
     }
 }
@@ -185,7 +189,7 @@ pub fn albedo_closure(closure: &Closure) -> Spectrum {
     let diffuse = closure.color * closure.k_d;
     let specular = closure.specular_color * closure.k_s;
     let rgb = match closure.model {
-        MODEL_LAMBERT | MODEL_OREN_NAYAR => diffuse,
+        MODEL_LAMBERT | MODEL_OREN_NAYAR | MODEL_EON => diffuse,
         MODEL_PHONG | MODEL_BLINN_PHONG | MODEL_WARD | MODEL_ASHIKHMIN_SHIRLEY => diffuse + specular,
         MODEL_COOK_TORRANCE => diffuse + specular * fresnel_closure(closure, 1.0),
         MODEL_CONDUCTOR | MODEL_ROUGH_CONDUCTOR => closure.specular_color * fresnel_closure(closure, 1.0),

@@ -29,6 +29,7 @@ pub mod delta;
 pub mod dielectric;
 pub mod distribution;
 pub mod environment;
+pub mod eon;
 pub mod filter;
 pub mod footprint;
 pub mod frame;

@@ -1,7 +1,7 @@
 //! Twins that parity kernels run through others.
 
 /// Twins that no parity kernel calls by name: the function, and the one through which a kernel runs it.
-pub const THROUGH: [(&str, &str); 123] = [
+pub const THROUGH: [(&str, &str); 132] = [
     ("eval_lambert", "eval_closure"),
     ("eval_phong", "eval_closure"),
     ("eval_blinn_phong", "eval_closure"),
@@ -114,6 +114,15 @@ pub const THROUGH: [(&str, &str); 123] = [
     ("visible_area", "pdf_facet"),
     ("visible_slope", "sample_visible"),
     ("eval_tabulated", "eval_closure"),
+    ("eval_eon", "eval_closure"),
+    ("pdf_eon", "pdf_closure"),
+    ("sample_eon", "sample_direction"),
+    ("eon_albedo", "eval_eon"),
+    ("eon_channel", "eval_eon"),
+    ("eon_transform", "pdf_eon"),
+    ("eon_clip", "pdf_eon"),
+    ("eon_azimuth", "pdf_eon"),
+    ("eon_uniform", "pdf_eon"),
     ("pdf_tabulated", "pdf_closure"),
     ("sample_tabulated", "sample_direction"),
     ("tabulated", "eval_tabulated"),

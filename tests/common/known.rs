@@ -85,6 +85,8 @@ pub fn models() -> Vec<Known> {
         of("phong, lafortune", phong(true)),
         Known { reciprocal: None, ..of("blinn-phong", half(Model::BlinnPhong { exponent: 12.0 })) },
         of("oren-nayar", white(Model::OrenNayar { sigma: 0.6 })),
+        of("eon", white(Model::Eon { roughness: 0.7 })),
+        of("eon, smooth", white(Model::Eon { roughness: 0.0 })),
         of("cook-torrance, ggx", half(facets(TrowbridgeReitz, 0.3, 0.3, Masking::VCavity))),
         of("cook-torrance, gaussian", half(facets(Gaussian, 0.4, 0.4, Masking::VCavity))),
         of("cook-torrance, phong", half(facets(Phong, 0.4, 0.4, Masking::Smith))),

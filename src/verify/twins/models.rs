@@ -4,9 +4,10 @@
 use super::{Family, In, Out, Twin};
 use crate::layout::{
     Features, MODEL_ASHIKHMIN_SHIRLEY, MODEL_BLEND, MODEL_BLINN_PHONG, MODEL_CONDUCTOR, MODEL_COOK_TORRANCE,
-    MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR, MODEL_NULL,
-    MODEL_OREN_NAYAR, MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR, MODEL_ROUGH_DIELECTRIC,
-    MODEL_ROUGH_PLASTIC, MODEL_TABULATED, MODEL_THIN_DIELECTRIC, MODEL_WARD, SceneHeader, SceneView,
+    MODEL_DIELECTRIC, MODEL_EMISSIVE, MODEL_EON, MODEL_KELEMEN, MODEL_LAMBERT, MODEL_MEASURED, MODEL_MIRROR,
+    MODEL_NULL, MODEL_OREN_NAYAR, MODEL_PHONG, MODEL_PLASTIC, MODEL_PRINCIPLED, MODEL_ROUGH_CONDUCTOR,
+    MODEL_ROUGH_DIELECTRIC, MODEL_ROUGH_PLASTIC, MODEL_TABULATED, MODEL_THIN_DIELECTRIC, MODEL_WARD, SceneHeader,
+    SceneView,
 };
 use crate::shading::closure::Closure;
 use crate::shading::material::{
@@ -142,7 +143,7 @@ macro_rules! model {
     };
 }
 
-const TWINS: [[Twin; 3]; 22] = [
+const TWINS: [[Twin; 3]; 23] = [
     model!("eval_lambert pdf_lambert", "sample_lambert", "lambert: rest", MODEL_LAMBERT),
     model!("eval_phong pdf_phong", "sample_phong", "phong: rest", MODEL_PHONG),
     model!("eval_blinn_phong pdf_blinn_phong", "sample_blinn_phong", "blinn_phong: rest", MODEL_BLINN_PHONG),
@@ -175,6 +176,7 @@ const TWINS: [[Twin; 3]; 22] = [
     model!("nothing: eval", "nothing: sample", "nothing: rest", MODEL_NULL),
     model!("a blend: eval", "a blend: sample", "a blend: rest", MODEL_BLEND),
     model!("eval_tabulated pdf_tabulated", "sample_tabulated", "tabulated: rest", MODEL_TABULATED),
+    model!("eval_eon pdf_eon", "sample_eon", "eon: rest", MODEL_EON),
 ];
 
 pub const FAMILY: Family = Family { kernel: "parity/models", twins: TWINS.as_flattened() };

@@ -56,6 +56,7 @@ const MODELS: &[(&str, &str)] = &[
     ("dielectric", "dielectric"),
     ("emissive", "emissive"),
     ("oren-nayar", "oren-nayar"),
+    ("eon", "eon"),
     ("ward", "ward"),
     ("ashikhmin-shirley", "ashikhmin-shirley"),
     ("kelemen", "kelemen"),
@@ -152,6 +153,7 @@ fn read_rough_model(
     let absorption = table.color("absorption")?.unwrap_or(Rgb::ZERO);
     Ok(match name {
         "oren-nayar" => Model::OrenNayar { sigma: table.float("sigma")?.unwrap_or(30.0).to_radians() },
+        "eon" => Model::Eon { roughness: table.float("roughness")?.unwrap_or(0.5) },
         "ward" => Model::Ward {
             alpha_u,
             alpha_v,

@@ -9,6 +9,7 @@ const LOCAL: &[&str] = &[
     "blinn-phong",
     "cook-torrance",
     "oren-nayar",
+    "eon",
     "ward",
     "ashikhmin-shirley",
     "kelemen",
@@ -19,7 +20,7 @@ const LOCAL: &[&str] = &[
     "measured",
 ];
 const DIFFUSE: &[&str] =
-    &["lambert", "phong", "blinn-phong", "cook-torrance", "oren-nayar", "ward", "ashikhmin-shirley"];
+    &["lambert", "phong", "blinn-phong", "cook-torrance", "oren-nayar", "eon", "ward", "ashikhmin-shirley"];
 const SPECULAR: &[&str] = &["phong", "blinn-phong", "cook-torrance", "ward", "ashikhmin-shirley"];
 const COLORED: &[&str] = &[
     "lambert",
@@ -29,6 +30,7 @@ const COLORED: &[&str] = &[
     "mirror",
     "emissive",
     "oren-nayar",
+    "eon",
     "ward",
     "ashikhmin-shirley",
     "kelemen",
@@ -74,7 +76,7 @@ pub static MATERIAL: Section = Section {
     noun: "[[material]]",
     keys: &[
         key("name", Kind::Text, "required", "What objects call it; unique"),
-        key("model", Kind::Choice(&["lambert", "phong", "blinn-phong", "cook-torrance", "mirror", "dielectric", "emissive", "oren-nayar", "ward", "ashikhmin-shirley", "kelemen", "conductor", "rough-conductor", "rough-dielectric", "thin-dielectric", "plastic", "rough-plastic", "principled", "measured", "null", "blend"]), "`\"lambert\"`", "The illumination model"),
+        key("model", Kind::Choice(&["lambert", "phong", "blinn-phong", "cook-torrance", "mirror", "dielectric", "emissive", "oren-nayar", "eon", "ward", "ashikhmin-shirley", "kelemen", "conductor", "rough-conductor", "rough-dielectric", "thin-dielectric", "plastic", "rough-plastic", "principled", "measured", "null", "blend"]), "`\"lambert\"`", "The illumination model"),
         key("color", Kind::Color(Range::NOT_NEGATIVE), "0.7; mirror 0.9 or the metal's; cook-torrance metals the metal's; emissive 1", "O_d, the diffuse colour, up to 1; of a mirror its reflectance, up to 1; of `emissive` its radiance; of glass the factor on what it reflects, 1; the base colour of `principled`").only(COLORED),
         key("texture", Kind::Special(TEXTURED), "none", "Multiplies `color`, which is 1 unless given; the table's keys are below, as for all that follow").only(COLORED),
         key("specular_texture", Kind::Special(TEXTURED), "none", "Multiplies `specular_color`").only(GLOSSY),
@@ -121,7 +123,7 @@ pub static MATERIAL: Section = Section {
         key("nonlinear", Kind::Boolean, "false", "Colours light at each reflection inside the coat").only(&["plastic", "rough-plastic"]),
         key("sigma", Kind::Number(Range::new(0.0, 90.0)), "30", "Standard deviation of the slope of Oren and Nayar's cavities (1994), degrees").only(&["oren-nayar"]),
         key("exponent_v", Kind::Number(Range::new(0.0, 1.0e6)), "`exponent`", "n across the tangent, `exponent` being n along it").only(&["ashikhmin-shirley"]),
-        key("roughness", Kind::Number(Range::UNIT), "0.5", "Alpha's root (Burley 2012)").only(DISNEY),
+        key("roughness", Kind::Number(Range::UNIT), "0.5", "Alpha's root (Burley 2012); of eon from Lambert's model to the roughest").only(&["principled", "eon"]),
         key("anisotropic", Kind::Number(Range::UNIT), "0", "Stretches the highlight along u").only(DISNEY),
         key("metallic", Kind::Number(Range::UNIT), "0", "From plastic to metal").only(DISNEY),
         key("spec_trans", Kind::Number(Range::UNIT), "0", "From plastic to glass").only(DISNEY),
