@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Mitsuba (PyPI mitsuba 3.9.1): white in an OpenEXR file of another white point is read pink or blue, without adaptation.
+# Mitsuba (PyPI mitsuba 3.9.1): white in an OpenEXR file of another white point is tinted, because it is not adapted.
 #
 # Expected: a file's chromaticities name the white of (1, 1, 1), and conversion to another space maps white to white. Source:
 #   OpenEXR, "Technical Introduction", "RGB Color", and "Standard attributes", adoptedNeutral; SMPTE ST 2065-1 and ICC.1:2022,
