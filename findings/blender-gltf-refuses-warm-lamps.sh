@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Blender (PyPI bpy 5.0.1): a scene with a lamp that has a colour temperature cannot be exported as glTF.
 #
-# Expected: the exporter multiplies the lamp's colour by that of its temperature. Source: Blender 5.0 manual, "Light Objects",
-#   "Temperature"; KHR_lights_punctual has a linear colour for it.
+# Expected: the exporter multiplies the lamp's colour by that of its temperature. Source: Blender 5.0 manual, light objects;
+#   KHR_lights_punctual has a linear colour for it.
 # Seen: `use_temperature` on, one lamp is enough: the export ends in "TypeError: color[item] = x: assigned value not a number"
 #   and no file, because the colour of the temperature, three numbers, is multiplied into one channel.
-# Hurts: the feature is new in 5.0 and was made for physical lamps; the message names neither the lamp nor the setting, so
-#   that the user has to halve the scene until it works.
+# Hurts: the feature was made for physical lamps; the message names neither the lamp nor the setting, so that the user has to
+#   halve the scene until it works.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

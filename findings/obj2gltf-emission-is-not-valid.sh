@@ -2,8 +2,7 @@
 # obj2gltf (npm 3.2.0): a lamp in an OBJ makes a glTF file that is not valid.
 #
 # Expected: Ke above 1 becomes an emissiveFactor of at most 1 and a KHR_materials_emissive_strength. Source: glTF 2.0, schema
-#   of material: each component of emissiveFactor is in 0 to 1; KHR_materials_emissive_strength (ratified 2022) was made for
-#   brighter lamps.
+#   of material: each component of emissiveFactor is in 0 to 1; KHR_materials_emissive_strength was made for brighter lamps.
 # Seen: Ke 2 3 4 is copied into emissiveFactor. gltf-validator (npm 2.0.0-dev.3.10) reports three errors, VALUE_NOT_IN_RANGE,
 #   one a channel.
 # Hurts: strict loaders refuse the scene, others cut the lamp to 1 1 1, and only the rest show it as meant; its colour changes

@@ -2,8 +2,8 @@
 # OpenColorIO (PyPI opencolorio 2.6.0): the default CPU processor raises 1 to the power of 2.2 and gets 1.00002.
 #
 # Expected: 1 to any power is 1 and the logarithm of 1 is 0, exactly, as the transforms are defined and as their inverse
-#   needs. Source: OpenColorIO's documentation of ExponentTransform and LogTransform (formulas), and of
-#   `getDefaultCPUProcessor`, which does not say that it approximates; IEEE 754-2019, 9.2.1: pow(1, y) is 1.
+#   needs. Source: OpenColorIO's documentation of ExponentTransform and LogTransform (formulas), which name no error; that the
+#   default may approximate stands with the flag OPTIMIZATION_FAST_LOG_EXP_POW alone; IEEE 754-2019, 9.2.1: pow(1, y) is 1.
 # Seen: with the default optimisation 1 becomes 1.0000223 and log2(1) is 1.29e-5, relative errors reach 2.5e-5, 200 times the
 #   spacing of floats. With OPTIMIZATION_LOSSLESS or OPTIMIZATION_NONE both are exact.
 # Hurts: white leaves the range of 0 to 1, so that searches for clipping find the whole sky; a golden picture made with the

@@ -5,8 +5,7 @@
 #   Source: Radiance, "File Formats", "Picture File Format (.hdr suffix)", FORMAT. Mitsuba 3.9.1 marks the bitmap as XYZ;
 #   OpenCV 5.0.0.93, OpenImageIO 3.2.2.0 and the crate image 0.25.10 refuse the file.
 # Seen: X, Y and Z are returned as the channels of the picture: white of D65, (0.95, 1, 1.09), is a pale blue.
-# Hurts: measuring cameras and Radiance's ra_xyze write such files; their colours are wrong by far, reds most, and no word is
-#   said.
+# Hurts: Radiance's ra_xyze writes such files; their colours are wrong by far, reds most, and no word is said.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -3,7 +3,7 @@
 # glTF.
 #
 # Expected: an object of scale 0 0 0 stays invisible, one of scale 1 0 1 stays flat. Source: glTF 2.0, 3.5.3, which allows a
-#   scale of zero and tells readers to skip such a node's mesh; the documentation of `Matrix4.decompose`, which gives
+#   scale of zero and lets readers leave out such a node's mesh; the documentation of `Matrix4.decompose`, which gives
 #   position, rotation and scale of a matrix.
 # Seen: where the determinant is 0, `decompose` returns a scale of 1 1 1 and no rotation. GLTFExporter writes matrices, and
 #   GLTFLoader decomposes them, so (0, 0, 0) and (1, 0, 1) come back as (1, 1, 1), without a warning.
