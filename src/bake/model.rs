@@ -15,7 +15,7 @@ use glam::Vec3;
 
 /// An index closer to 1 than this would leave rough glass without facets that refract.
 const ETA_LEAST: f32 = 1.0e-3;
-/// Leaves a blend may have (`transport/textured`).
+/// Leaves a blend may have (`transport/resolve`).
 const BLEND_LEAVES: usize = MAX_LEAVES as usize;
 /// Blends within blends, at most.
 const BLEND_DEPTH: usize = 8;

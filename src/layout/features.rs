@@ -78,6 +78,14 @@ pub struct Features {
     pub hides_emitters: bool,
 }
 
+impl Features {
+    /// Whether a material has `MODEL_*` `model`; `HAS_MODEL` of the shaders.
+    #[inline(always)]
+    pub fn has_model(&self, model: u32) -> bool {
+        self.models & (1 << model) != 0
+    }
+}
+
 impl Default for Features {
     fn default() -> Self {
         Self {

@@ -41,11 +41,11 @@ const PDF_LEAST: f32 = 1.0e-12;
 
 /// Where a path has met a surface.
 #[derive(Clone, Copy, Debug)]
-pub struct Meeting {
-    pub hit: Hit,
+pub struct Meeting<'a> {
+    pub hit: &'a Hit,
     /// The surface with its normal map, and as it is without one.
-    pub surface: Surface,
-    pub bare: Surface,
+    pub surface: &'a Surface,
+    pub bare: &'a Surface,
     /// What a unit of radiance that the surface scatters adds to the sample: the path's throughput, or of a blend what it was
     /// before one of its materials was drawn.
     pub arriving: Spectrum,
@@ -100,7 +100,7 @@ fn shade_emitter(
     wo: Vec3,
     queues: &mut Queues,
 ) {
-    let surface = &meeting.surface;
+    let surface = meeting.surface;
     let mut chosen = 0;
     if scene.header.emitter_count > 1 {
         chosen = choose_emitter(scene, sample_2d(key, DIMENSION_LIGHT_CHOICE));
@@ -119,7 +119,7 @@ fn shade_emitter(
     }
     let mut scattering = no_scattering();
     if blended {
-        scattering = eval_blend(scene, &meeting.hit, &meeting.bare, wo, lit.wi, meeting.hidden);
+        scattering = eval_blend(scene, meeting.hit, meeting.bare, wo, lit.wi, meeting.hidden);
     } else {
         scattering.value = eval_closure(scene, closure, wo_local, wi_local);
     }
@@ -157,7 +157,7 @@ fn scatter(
     wo: Vec3,
     queues: &mut Queues,
 ) {
-    let surface = &meeting.surface;
+    let surface = meeting.surface;
     // The last ray can only meet what glows.
     if !scene.features.has_glow && path.depth + 1 >= scene.header.max_depth {
         return;
@@ -178,7 +178,7 @@ fn scatter(
     next.flags = 0;
     next.pdf = if (bsdf.flags & SAMPLE_DELTA) != 0 { 0.0 } else { bsdf.pdf };
     if closure.share < 1.0 && next.pdf > 0.0 {
-        let all = eval_blend(scene, &meeting.hit, &meeting.bare, wo, wi, meeting.hidden);
+        let all = eval_blend(scene, meeting.hit, meeting.bare, wo, wi, meeting.hidden);
         if all.pdf <= PDF_LEAST {
             return;
         }
@@ -271,7 +271,7 @@ pub fn shade_path(
     }
     let frame = shading_frame(scene, surface, closure, wo);
     let arriving = if blended { incoming.throughput } else { path.throughput };
-    let meeting = Meeting { hit: *hit, surface: *surface, bare: *bare, arriving, hidden };
+    let meeting = Meeting { hit, surface, bare, arriving, hidden };
     // Light samples are scattered by all materials of a blend, whichever was drawn.
     if scene.header.emitter_count > 0 && (blended || !is_delta(closure)) {
         shade_emitter(scene, &path, key, &meeting, closure, frame, wo, queues);

@@ -82,7 +82,7 @@ pub fn resolve_material(
     dimension: u32,
     surface: &mut Surface,
 ) -> Closure {
-    let blended = load_material(scene, surface.material).model == MODEL_BLEND;
+    let blended = scene.features.has_model(MODEL_BLEND) && load_material(scene, surface.material).model == MODEL_BLEND;
     let u = if blended { sample_1d(key, dimension) } else { 0.0 };
     resolve_part(scene, direction, hit, DRAWN, u, dimension, surface)
 }

@@ -132,14 +132,14 @@ fn studio(direction: DVec3) -> DVec3 {
 fn sky(direction: DVec3) -> DVec3 {
     let up = direction.y;
     if up < 0.0 {
-        return DVec3::new(0.16, 0.15, 0.14) * (0.25 + 0.75 * smooth(1.0 + up * 4.0));
+        return DVec3::new(0.32, 0.30, 0.28) * (0.25 + 0.75 * smooth(1.0 + up * 4.0));
     }
     let haze = libm::exp(-up / 0.22);
-    let air = DVec3::new(0.16, 0.30, 0.62).lerp(DVec3::new(0.62, 0.70, 0.80), haze);
+    let air = DVec3::new(0.32, 0.60, 1.24).lerp(DVec3::new(1.24, 1.40, 1.60), haze);
     let sun = direction.dot(towards(-50.0_f64.to_radians(), 44.0_f64.to_radians())).clamp(-1.0, 1.0);
     let angle = libm::acos(sun).to_degrees();
-    let disc = 118.0 * smooth((3.2 - angle) / 1.4);
-    let glow = 0.5 * libm::exp(-angle / 9.0);
+    let disc = 236.0 * smooth((3.2 - angle) / 1.4);
+    let glow = 1.0 * libm::exp(-angle / 9.0);
     air + DVec3::new(1.0, 0.93, 0.82) * (disc + glow)
 }
 
