@@ -5,6 +5,7 @@ mod specialise;
 pub use specialise::specialise;
 
 use rspirv::spirv::{Capability, ExecutionMode, Op};
+use std::sync::OnceLock;
 
 /// How a kernel reads the scene and its queues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -58,6 +59,11 @@ pub fn kernel(name: &str, fetch: Fetch) -> Option<&'static [u32]> {
     };
     Some(bytemuck::cast_slice(words))
 }
+
+/// What a test makes of every kernel before a driver sees it.
+#[doc(hidden)]
+pub static REWRITE: OnceLock<Rewrite> = OnceLock::new();
+type Rewrite = fn(&[u32]) -> Vec<u32>;
 
 /// Names of all kernels, sorted.
 pub fn names() -> impl Iterator<Item = &'static str> {

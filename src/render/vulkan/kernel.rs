@@ -37,8 +37,9 @@ impl Kernel {
         push_bytes: u32,
     ) -> Result<Kernel, RenderError> {
         let invalid = |error| RenderError::Failed(format!("kernel {name}: {error}"));
-        let words = &shaders::specialise(words, constants).map_err(invalid)?;
-        let bindings = reflect::bindings(words).map_err(invalid)?;
+        let words = shaders::specialise(words, constants).map_err(invalid)?;
+        let words = shaders::REWRITE.get().map_or_else(|| words.clone(), |rewrite| rewrite(&words));
+        let bindings = reflect::bindings(&words).map_err(invalid)?;
         check_limits(device, name, &bindings)?;
         // From here on `Drop` cleans up whatever was made before a failure.
         let mut inner = Inner {
@@ -51,7 +52,7 @@ impl Kernel {
             bindings,
         };
         inner.make_layouts()?;
-        let words = shaders::with_float_controls(words, device.info().float_controls);
+        let words = shaders::with_float_controls(&words, device.info().float_controls);
         inner.make_pipeline(&words)?;
         Ok(Kernel(Arc::new(inner)))
     }
