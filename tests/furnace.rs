@@ -90,6 +90,7 @@ fn lossy() -> Vec<(&'static str, Material)> {
     };
     vec![
         ("oren-nayar", white(Model::OrenNayar { sigma: 0.4 })),
+        ("eon", white(Model::Eon { roughness: 0.8 })),
         ("phong", half(Model::Phong { exponent: 12.0, lafortune: None })),
         ("blinn-phong", half(Model::BlinnPhong { exponent: 12.0 })),
         ("cook-torrance, v-cavity", facets(Beckmann, Masking::VCavity)),

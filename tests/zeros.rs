@@ -103,7 +103,7 @@ fn signs_are_gone(context: &mut device::Validated<gonio::render::vulkan::Context
         layout(set = 0, binding = 1) buffer Out { uint told[]; };\n\
         void main() {\n  vec2 v = vec2(given[0], given[1]);\n  told[0] = floatBitsToUint(given[0]);\n  \
         told[1] = floatBitsToUint(-v.y);\n  told[2] = floatBitsToUint((v * v.y).x);\n  told[3] = floatBitsToUint(-0.0 * v.y);\n}\n";
-    let words = compile::glsl_to_spirv(text, "shaders/kernels/zeros.comp", Path::new("."), &[]).expect("GLSL");
+    let words = compile::glsl_to_spirv(text, "shaders/kernels/zeros.comp", &[Path::new(".")], &[]).expect("GLSL");
     let given: Vec<u8> = [-0.0f32, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
     let mut run = |words: &[u32]| {
         let buffers = [BufferSpec::Input(&given), BufferSpec::Output(16)];

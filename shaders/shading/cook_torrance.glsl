@@ -109,8 +109,8 @@ float pdf_lobes(Closure closure, vec3 wo, vec3 h, float inv_h) {
         return both_lobes_d(closure, h, share, 1.0 - share) * (h.z * inv_h);
     }
     vec3 wm = h * inv_h;
-    float first = pdf_facet(lobe_distribution(closure, 0u), closure.alpha_u, closure.alpha_v, wo, wm);
-    float second = pdf_facet(lobe_distribution(closure, 1u), closure.second_alpha_u, closure.second_alpha_v, wo, wm);
+    float first = pdf_reflecting(lobe_distribution(closure, 0u), closure.alpha_u, closure.alpha_v, wo, wm);
+    float second = pdf_reflecting(lobe_distribution(closure, 1u), closure.second_alpha_u, closure.second_alpha_v, wo, wm);
     return share * first + (1.0 - share) * second;
 }
 
@@ -141,7 +141,7 @@ DirectionSample sample_cook_torrance(Closure closure, vec3 wo, vec2 u, float u_l
         vec3 wm = sample_beckmann(u, m);
         if ((closure.flags & MATERIAL_GENERAL_LOBES) != 0u) {
             uint kind = lobe_distribution(closure, first ? 0u : 1u);
-            wm = sample_facet(kind, m, first ? closure.alpha_v : closure.second_alpha_v, wo, u);
+            wm = sample_reflecting(kind, m, first ? closure.alpha_v : closure.second_alpha_v, wo, u);
         }
         wi = reflect_about(wo, wm);
     }

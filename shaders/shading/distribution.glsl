@@ -251,4 +251,45 @@ float pdf_facet(uint kind, float alpha_u, float alpha_v, vec3 wo, vec3 wm) {
     return div(d * max_(dot3(wo, wm), 0.0), visible_area(kind, alpha_u, alpha_v, wo));
 }
 
+// Part of the sphere cap of visible facets that reflection needs, as a factor on the stretched view's cosine, 0..1: facets
+// further down mirror `wo` below the horizon. `wo.z` > 0.
+// Source: Eto and Tokuyoshi 2023, "Bounded VNDF Sampling for Smith-GGX Reflections", equation 5; Tokuyoshi and Eto 2024, "Bounded
+// VNDF Sampling for the Smith-GGX BRDF" (two roughnesses).
+float reflection_bound(float alpha_u, float alpha_v, vec3 wo) {
+    float a = min_(min_(max_(alpha_u, M_MIN), max_(alpha_v, M_MIN)), 1.0);
+    float a2 = a * a;
+    float s = 1.0 + sqrt_(wo.x * wo.x + wo.y * wo.y);
+    float s2 = s * s;
+    return div((1.0 - a2) * s2, s2 + a2 * (wo.z * wo.z));
+}
+
+// A facet normal to mirror `wo` about, with density `pdf_reflecting`: of Trowbridge and Reitz only of those that are seen and may
+// send it above the horizon, else as `sample_facet`. `wo.z` > 0. `u`: 0..1 each, excluding 1.
+// Source: Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 3, and `reflection_bound`.
+vec3 sample_reflecting(uint kind, float alpha_u, float alpha_v, vec3 wo, vec2 u) {
+    if (kind != DISTRIBUTION_TROWBRIDGE_REITZ) {
+        return sample_facet(kind, alpha_u, alpha_v, wo, u);
+    }
+    float a_u = max_(alpha_u, M_MIN);
+    float a_v = max_(alpha_v, M_MIN);
+    vec3 view = normalize3(vec3(a_u * wo.x, a_v * wo.y, wo.z));
+    float lowest = reflection_bound(alpha_u, alpha_v, wo) * view.z;
+    float z = (1.0 - u.x) * (1.0 + lowest) - lowest;
+    float sin_c = sqrt_(max_((1.0 - z) * (1.0 + z), 0.0));
+    vec3 h = vec3(sin_c * cos_turns(u.y), sin_c * sin_turns(u.y), z) + view;
+    return normalize3(vec3(a_u * h.x, a_v * h.y, max_(h.z, 1.0e-6)));
+}
+
+// Density of `sample_reflecting` per steradian of the facet normal, for those that mirror `wo` above the horizon. `wm`: unit.
+// `wo.z` > 0.
+float pdf_reflecting(uint kind, float alpha_u, float alpha_v, vec3 wo, vec3 wm) {
+    if (kind != DISTRIBUTION_TROWBRIDGE_REITZ) {
+        return pdf_facet(kind, alpha_u, alpha_v, wo, wm);
+    }
+    float across = stretched_sine(alpha_u, alpha_v, wo);
+    float seen = sqrt_(wo.z * wo.z + across * across);
+    float area = 0.5 * (reflection_bound(alpha_u, alpha_v, wo) * wo.z + seen);
+    return div(facet_d(kind, alpha_u, alpha_v, 1.0, wm) * max_(dot3(wo, wm), 0.0), area);
+}
+
 #endif

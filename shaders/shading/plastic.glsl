@@ -103,7 +103,7 @@ float pdf_rough_plastic(Closure closure, vec3 wo, vec3 wi) {
     }
     float p = coat_probability(closure, 1.0 - albedo_at(closure.table, wo.z));
     vec3 wm = normalize3(wo + wi);
-    float facets = pdf_facet(closure.distribution, closure.alpha_u, closure.alpha_u, wo, wm);
+    float facets = pdf_reflecting(closure.distribution, closure.alpha_u, closure.alpha_u, wo, wm);
     float coat = div(facets, 4.0 * max_(dot3(wo, wm), 1.0e-7));
     return p * coat + (1.0 - p) * (wi.z * INV_PI);
 }
@@ -115,7 +115,7 @@ DirectionSample sample_rough_plastic(Closure closure, vec3 wo, vec2 u, float u_l
     }
     vec3 wi = square_to_cosine_hemisphere(u);
     if (u_lobe < coat_probability(closure, 1.0 - albedo_at(closure.table, wo.z))) {
-        wi = reflect_about(wo, sample_facet(closure.distribution, closure.alpha_u, closure.alpha_u, wo, u));
+        wi = reflect_about(wo, sample_reflecting(closure.distribution, closure.alpha_u, closure.alpha_u, wo, u));
     }
     if (!on_upper_side(wo, wi)) {
         return no_direction();

@@ -75,7 +75,7 @@ float pdf_rough_conductor(Closure closure, vec3 wo, vec3 wi) {
     }
     float p = multiple_probability(closure, wo.z);
     vec3 wm = normalize3(wo + wi);
-    float facets = pdf_facet(closure.distribution, closure.alpha_u, closure.alpha_v, wo, wm);
+    float facets = pdf_reflecting(closure.distribution, closure.alpha_u, closure.alpha_v, wo, wm);
     // d omega_i = 4 (V.H) d omega_h
     float single = div(facets, 4.0 * max_(dot3(wo, wm), 1.0e-7));
     return p * (wi.z * INV_PI) + (1.0 - p) * single;
@@ -89,7 +89,7 @@ DirectionSample sample_rough_conductor(Closure closure, vec3 wo, vec2 u, float u
     }
     vec3 wi = square_to_cosine_hemisphere(u);
     if (u_lobe >= multiple_probability(closure, wo.z)) {
-        wi = reflect_about(wo, sample_facet(closure.distribution, closure.alpha_u, closure.alpha_v, wo, u));
+        wi = reflect_about(wo, sample_reflecting(closure.distribution, closure.alpha_u, closure.alpha_v, wo, u));
     }
     if (!on_upper_side(wo, wi)) {
         return no_direction();

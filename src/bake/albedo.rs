@@ -8,7 +8,7 @@ use crate::layout::{
 };
 use crate::shading::closure::Closure;
 use crate::shading::dielectric::refract_local;
-use crate::shading::distribution::{sample_facet, smith_g1};
+use crate::shading::distribution::{sample_facet, sample_reflecting, smith_g1};
 use crate::shading::fresnel::{fresnel_closure, fresnel_dielectric};
 use crate::shading::kelemen::eval_kelemen;
 use crate::shading::lobe::{COS_MIN, reflect_about};
@@ -126,7 +126,7 @@ pub fn conductor_table(closure: &mut Closure, tables: &mut Vec<f32>) {
     let kind = closure.distribution;
     let table = tabulate(closure.alpha_u != closure.alpha_v, |wo, u| {
         let scene = SceneView::of_tables(&scene_header, &features, &constants);
-        let wi = reflect_about(wo, sample_facet(kind, white.alpha_u, white.alpha_v, wo, u));
+        let wi = reflect_about(wo, sample_reflecting(kind, white.alpha_u, white.alpha_v, wo, u));
         let pdf = pdf_rough_conductor(&scene, &white, wo, wi);
         if pdf <= 0.0 {
             return 0.0;

@@ -76,7 +76,7 @@ impl FitModel {
             Self::Ward => (closure.alpha_u, closure.alpha_v) = (number(0), number(1)),
             Self::CookTorrance => {
                 (closure.alpha_u, closure.alpha_v) = (number(0), number(0));
-                closure.eta = number(1);
+                closure.f0 = Vec3::splat(number(1));
             }
         }
     }

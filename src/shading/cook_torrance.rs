@@ -9,7 +9,7 @@ use crate::layout::{
     DISTRIBUTION_GAUSSIAN, MATERIAL_D_1982, MATERIAL_GENERAL_LOBES, MATERIAL_SMITH, SceneView, load_table,
 };
 use crate::shading::closure::Closure;
-use crate::shading::distribution::{facet_d, pdf_facet, sample_facet, smith_g_correlated};
+use crate::shading::distribution::{facet_d, pdf_reflecting, sample_reflecting, smith_g_correlated};
 use crate::shading::fresnel::fresnel_closure;
 use crate::shading::lobe::{
     DirectionSample, make_direction, no_direction, on_upper_side, reflect_about, specular_probability,
@@ -121,8 +121,8 @@ pub fn pdf_lobes(scene: &SceneView, closure: &Closure, wo: Vec3, h: Vec3, inv_h:
         return both_lobes_d(scene, closure, h, share, 1.0 - share) * (h.z * inv_h);
     }
     let wm = h * inv_h;
-    let first = pdf_facet(lobe_distribution(closure, 0), closure.alpha_u, closure.alpha_v, wo, wm);
-    let second = pdf_facet(lobe_distribution(closure, 1), closure.second_alpha_u, closure.second_alpha_v, wo, wm);
+    let first = pdf_reflecting(lobe_distribution(closure, 0), closure.alpha_u, closure.alpha_v, wo, wm);
+    let second = pdf_reflecting(lobe_distribution(closure, 1), closure.second_alpha_u, closure.second_alpha_v, wo, wm);
     share * first + (1.0 - share) * second
 }
 
@@ -155,7 +155,7 @@ pub fn sample_cook_torrance(scene: &SceneView, closure: &Closure, wo: Vec3, u: V
         let mut wm = sample_beckmann(u, m);
         if (closure.flags & MATERIAL_GENERAL_LOBES) != 0 {
             let kind = lobe_distribution(closure, if first { 0 } else { 1 });
-            wm = sample_facet(kind, m, if first { closure.alpha_v } else { closure.second_alpha_v }, wo, u);
+            wm = sample_reflecting(kind, m, if first { closure.alpha_v } else { closure.second_alpha_v }, wo, u);
         }
         wi = reflect_about(wo, wm);
     }

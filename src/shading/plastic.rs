@@ -11,7 +11,7 @@ use crate::layout::{MATERIAL_NONLINEAR, SceneView, load_table};
 use crate::shading::albedo::albedo_at;
 use crate::shading::bsdf::{BsdfSample, SAMPLE_DELTA, finish_sample, make_sample, no_sample};
 use crate::shading::closure::Closure;
-use crate::shading::distribution::{facet_d, pdf_facet, sample_facet, smith_g_separable};
+use crate::shading::distribution::{facet_d, pdf_reflecting, sample_reflecting, smith_g_separable};
 use crate::shading::fresnel::fresnel_dielectric;
 use crate::shading::lobe::{
     COS_MIN, DirectionSample, make_direction, no_direction, on_upper_side, reflect_about, reflect_local,
@@ -112,7 +112,7 @@ pub fn pdf_rough_plastic(scene: &SceneView, closure: &Closure, wo: Vec3, wi: Vec
     }
     let p = coat_probability(closure, 1.0 - albedo_at(scene, closure.table, wo.z));
     let wm = normalize3(wo + wi);
-    let facets = pdf_facet(closure.distribution, closure.alpha_u, closure.alpha_u, wo, wm);
+    let facets = pdf_reflecting(closure.distribution, closure.alpha_u, closure.alpha_u, wo, wm);
     let coat = div(facets, 4.0 * max_(dot3(wo, wm), 1.0e-7));
     p * coat + (1.0 - p) * (wi.z * INV_PI)
 }
@@ -125,7 +125,7 @@ pub fn sample_rough_plastic(scene: &SceneView, closure: &Closure, wo: Vec3, u: V
     }
     let mut wi = square_to_cosine_hemisphere(u);
     if u_lobe < coat_probability(closure, 1.0 - albedo_at(scene, closure.table, wo.z)) {
-        wi = reflect_about(wo, sample_facet(closure.distribution, closure.alpha_u, closure.alpha_u, wo, u));
+        wi = reflect_about(wo, sample_reflecting(closure.distribution, closure.alpha_u, closure.alpha_u, wo, u));
     }
     if !on_upper_side(wo, wi) {
         return no_direction();

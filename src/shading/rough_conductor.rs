@@ -8,7 +8,7 @@
 use crate::layout::{DISTRIBUTION_GAUSSIAN, MATERIAL_COMPENSATE, SceneView, load_table};
 use crate::shading::albedo::albedo_at;
 use crate::shading::closure::Closure;
-use crate::shading::distribution::{facet_d, pdf_facet, sample_facet, smith_g_separable};
+use crate::shading::distribution::{facet_d, pdf_reflecting, sample_reflecting, smith_g_separable};
 use crate::shading::fresnel::fresnel_closure;
 use crate::shading::lobe::{COS_MIN, DirectionSample, make_direction, no_direction, on_upper_side, reflect_about};
 use crate::shading::math::{INV_PI, PI, clamp_, div, dot3, max_, min_, normalize3};
@@ -79,7 +79,7 @@ pub fn pdf_rough_conductor(scene: &SceneView, closure: &Closure, wo: Vec3, wi: V
     }
     let p = multiple_probability(scene, closure, wo.z);
     let wm = normalize3(wo + wi);
-    let facets = pdf_facet(closure.distribution, closure.alpha_u, closure.alpha_v, wo, wm);
+    let facets = pdf_reflecting(closure.distribution, closure.alpha_u, closure.alpha_v, wo, wm);
     // d omega_i = 4 (V.H) d omega_h
     let single = div(facets, 4.0 * max_(dot3(wo, wm), 1.0e-7));
     p * (wi.z * INV_PI) + (1.0 - p) * single
@@ -94,7 +94,7 @@ pub fn sample_rough_conductor(scene: &SceneView, closure: &Closure, wo: Vec3, u:
     }
     let mut wi = square_to_cosine_hemisphere(u);
     if u_lobe >= multiple_probability(scene, closure, wo.z) {
-        wi = reflect_about(wo, sample_facet(closure.distribution, closure.alpha_u, closure.alpha_v, wo, u));
+        wi = reflect_about(wo, sample_reflecting(closure.distribution, closure.alpha_u, closure.alpha_v, wo, u));
     }
     if !on_upper_side(wo, wi) {
         return no_direction();

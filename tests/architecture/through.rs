@@ -1,7 +1,7 @@
 //! Twins that parity kernels run through others.
 
 /// Twins that no parity kernel calls by name: the function, and the one through which a kernel runs it.
-pub const THROUGH: [(&str, &str); 132] = [
+pub const THROUGH: [(&str, &str); 135] = [
     ("eval_lambert", "eval_closure"),
     ("eval_phong", "eval_closure"),
     ("eval_blinn_phong", "eval_closure"),
@@ -69,7 +69,7 @@ pub const THROUGH: [(&str, &str); 132] = [
     ("multiple_scattering", "eval_rough_conductor"),
     ("no_direction", "sample_ashikhmin"),
     ("pdf_ashikhmin", "pdf_closure"),
-    ("pdf_facet", "pdf_lobes"),
+    ("pdf_facet", "pdf_reflecting"),
     ("pdf_kelemen", "pdf_closure"),
     ("pdf_lobes", "pdf_cook_torrance"),
     ("pdf_measured", "pdf_closure"),
@@ -92,7 +92,7 @@ pub const THROUGH: [(&str, &str); 132] = [
     ("sample_blinn_phong", "sample_direction"),
     ("sample_cook_torrance", "sample_direction"),
     ("sample_direction", "sample_closure"),
-    ("sample_facet", "sample_cook_torrance"),
+    ("sample_facet", "sample_reflecting"),
     ("sample_kelemen", "sample_direction"),
     ("sample_lambert", "sample_direction"),
     ("sample_measured", "sample_direction"),
@@ -113,6 +113,9 @@ pub const THROUGH: [(&str, &str); 132] = [
     ("stretched_sine", "smith_lambda"),
     ("visible_area", "pdf_facet"),
     ("visible_slope", "sample_visible"),
+    ("reflection_bound", "sample_reflecting"),
+    ("sample_reflecting", "sample_rough_conductor"),
+    ("pdf_reflecting", "pdf_rough_conductor"),
     ("eval_tabulated", "eval_closure"),
     ("eval_eon", "eval_closure"),
     ("pdf_eon", "pdf_closure"),
