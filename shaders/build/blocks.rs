@@ -36,7 +36,7 @@ fn parameters(schema: &Schema, block: &Record) -> Result<Vec<Leaf>, String> {
             return Err(format!("{}::{} is no member of the closure", block.name, leaf.path));
         }
     }
-    if record_bytes(schema, block) % WORD != 0 {
+    if !record_bytes(schema, block).is_multiple_of(WORD) {
         return Err(format!("{} is not a whole number of {WORD}-byte words", block.name));
     }
     Ok(found)

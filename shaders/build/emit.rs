@@ -272,7 +272,7 @@ fn kept_if(leaves: &[Leaf], word: usize) -> Result<Option<&str>, String> {
 /// `load_*` of a record whose words `fetch` gives from `base` on.
 fn load(schema: &Schema, record: &Record, fetch: &str, base: &str) -> Result<String, String> {
     let (name, words) = (&record.name, record_bytes(schema, record) / WORD);
-    if record_bytes(schema, record) % WORD != 0 {
+    if !record_bytes(schema, record).is_multiple_of(WORD) {
         return Err(format!("{name} is not a whole number of {WORD}-byte words"));
     }
     let mut parts = Vec::new();
@@ -447,7 +447,7 @@ fn rust(schema: &Schema) -> String {
     let starts = schema.heap.iter().enumerate().map(|(at, name)| format!("{name}: first[{at}]"));
     let _ = writeln!(
         text,
-        "impl From<[u32; {}]> for HeapStarts {{\n    fn from(first: [u32; {0}]) -> Self {{\n        Self {{ {}, ..Self::default() }}\n    }}\n}}\n",
+        "impl From<[u32; {}]> for HeapStarts {{\n    fn from(first: [u32; {0}]) -> Self {{\n        Self {{ {} }}\n    }}\n}}\n",
         schema.heap.len(),
         starts.collect::<Vec<_>>().join(", ")
     );
@@ -459,7 +459,11 @@ fn rust(schema: &Schema) -> String {
             own().count()
         );
         for (number, switch) in own() {
-            let _ = writeln!(text, "            ({number}, u32::from(self.{})),", switch.member.name);
+            let value = match switch.member.shape {
+                Shape::Bool => format!("u32::from(self.{})", switch.member.name),
+                _ => format!("self.{}", switch.member.name),
+            };
+            let _ = writeln!(text, "            ({number}, {value}),");
         }
         text.push_str("        ]\n    }\n}\n\n");
     }

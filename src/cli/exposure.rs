@@ -19,8 +19,8 @@ const MEAN: f64 = 0.3;
 const MOST: f64 = 0.97;
 const BRIGHT: f64 = 0.8;
 /// One contribution of scattered light may be so many times as bright as what is shown white: enough for every lamp that a
-/// mirror shows, too little for a speck.
-const SPECK: f64 = 8.0;
+/// mirror shows, too little for a speck among a few dozen samples.
+const SPECK: f64 = 2.0;
 
 /// Sets the exposure of a scene whose film is to be metered, and limits specks, which nobody wants in a picture that came of
 /// itself. `baker`: bakes the scene itself afterwards.
