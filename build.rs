@@ -15,6 +15,8 @@ mod blocks;
 mod compile;
 #[path = "shaders/build/emit.rs"]
 mod emit;
+#[path = "shaders/build/host.rs"]
+mod host;
 #[path = "shaders/build/schema.rs"]
 mod schema;
 #[path = "shaders/build/strict.rs"]

@@ -1,4 +1,4 @@
-//! Writes what `src/layout` declares (`schema`) for the other side, and what follows from it for the host.
+//! Writes what `src/layout` declares (`schema`) for the other side, and what follows from it for the host (`host`).
 //!
 //! * `layout/records.glsl`: constants and structs, for every shader.
 //! * `layout/features.glsl`: specialisation constants that say what the scene uses, for shaders that ask.
@@ -8,8 +8,8 @@
 //! * `layout/closure.glsl`, `layout/blocks.glsl`: the closure, and how it is unpacked from its model's block (`blocks`).
 //! * `layout.rs`, `closure.rs`: the Rust side of `load_*`, the heap, the numbers of specialisation constants, and a list of all records.
 
-use crate::blocks;
-use crate::schema::{Array, Constant, Member, Record, Schema, Shape, Value};
+use crate::schema::{Constant, Member, Record, Schema, Shape, Value};
+use crate::{blocks, host};
 use std::fmt::Write as _;
 
 /// Bytes of the word in which kernels fetch.
@@ -40,7 +40,7 @@ pub fn files(schema: &Schema) -> Result<Vec<(&'static str, String)>, String> {
         ("layout/proof.glsl", proof(schema)),
         ("layout/closure.glsl", blocks::closure(schema)),
         ("layout/blocks.glsl", blocks::unpack(schema)?),
-        ("layout.rs", rust(schema)),
+        ("layout.rs", host::layout(schema)),
         ("closure.rs", blocks::rust(schema)?),
     ])
 }
@@ -332,7 +332,7 @@ fn store(schema: &Schema, record: &Record, put: &str) -> Result<String, String> 
 }
 
 /// `top_instances` are loaded one by one as `top_instance`.
-fn singular(array: &str) -> &str {
+pub fn singular(array: &str) -> &str {
     array.strip_suffix('s').unwrap_or(array)
 }
 
@@ -410,92 +410,4 @@ fn proof(schema: &Schema) -> String {
     }
     text.push_str("    }\n}\n");
     format!("// Written by the build from src/layout.\n{text}")
-}
-
-/// The type of an array's element in Rust.
-fn rust_type(shape: &Shape) -> &str {
-    match shape {
-        Shape::Record(name) => name,
-        Shape::Lanes(1, true) => "f32",
-        Shape::Lanes(4, false) => "[u32; 4]",
-        _ => "u32",
-    }
-}
-
-fn rust(schema: &Schema) -> String {
-    let mut text = String::new();
-    for array in &schema.arrays {
-        let (kind, name) = (rust_type(&array.element), &array.name);
-        let load = match &array.element {
-            Shape::Record(record) => snake(record),
-            _ => singular(name).to_owned(),
-        };
-        let _ = writeln!(
-            text,
-            "/// Entry `index` of `{name}`.\n#[inline(always)]\npub fn load_{load}(scene: &SceneView, index: u32) -> {kind} {{\n    scene.{name}[index as usize]\n}}\n"
-        );
-    }
-    let _ = writeln!(
-        text,
-        "impl<'a> SceneView<'a> {{\n    /// The arrays of the data heap, in its order.\n    pub fn heap(&self) -> [&'a [u8]; {}] {{\n        [",
-        schema.heap.len()
-    );
-    for name in &schema.heap {
-        let _ = writeln!(text, "            bytemuck::cast_slice(self.{name}),");
-    }
-    text.push_str("        ]\n    }\n}\n\n");
-    let starts = schema.heap.iter().enumerate().map(|(at, name)| format!("{name}: first[{at}]"));
-    let _ = writeln!(
-        text,
-        "impl From<[u32; {}]> for HeapStarts {{\n    fn from(first: [u32; {0}]) -> Self {{\n        Self {{ {} }}\n    }}\n}}\n",
-        schema.heap.len(),
-        starts.collect::<Vec<_>>().join(", ")
-    );
-    for of in ["Variant", "Features"] {
-        let own = || schema.switches.iter().enumerate().filter(|(_, switch)| switch.of == of);
-        let _ = writeln!(
-            text,
-            "impl {of} {{\n    /// Number and value of each specialisation constant.\n    pub fn constants(&self) -> [(u32, u32); {}] {{\n        [",
-            own().count()
-        );
-        for (number, switch) in own() {
-            let value = match switch.member.shape {
-                Shape::Bool => format!("u32::from(self.{})", switch.member.name),
-                _ => format!("self.{}", switch.member.name),
-            };
-            let _ = writeln!(text, "            ({number}, {value}),");
-        }
-        text.push_str("        ]\n    }\n}\n\n");
-    }
-    text.push_str("/// Every record, in the order of the parity kernel of the layout.\npub static RECORDS: &[RecordLayout] = &[\n");
-    for record in &schema.records {
-        let name = &record.name;
-        let holds = |array: &&Array| array.element == Shape::Record(name.clone());
-        let array = schema.arrays.iter().find(holds).map(|array| &array.name);
-        let _ = writeln!(
-            text,
-            "    RecordLayout {{ name: {name:?}, size: size_of::<{name}>(), array: {array:?}, members: &["
-        );
-        for member in &record.members {
-            let own = if member.name.starts_with("pad") { format!("_{}", member.name) } else { member.name.clone() };
-            let _ = writeln!(
-                text,
-                "        MemberLayout {{ name: {:?}, offset: std::mem::offset_of!({name}, {own}), kind: {:?} }},",
-                member.name,
-                glsl_type(&member.shape)
-            );
-        }
-        text.push_str("    ] },\n");
-    }
-    text.push_str("];\n\n/// Every constant, with its bits.\npub static CONSTANTS: &[(&str, u32)] = &[\n");
-    for constant in &schema.constants {
-        let name = &constant.name;
-        let bits = match constant.value {
-            Value::Uint(_) => name.clone(),
-            Value::Float(_) => format!("{name}.to_bits()"),
-        };
-        let _ = writeln!(text, "    ({name:?}, {bits}),");
-    }
-    text.push_str("];\n");
-    text
 }

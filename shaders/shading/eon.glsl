@@ -1,7 +1,7 @@
 // Rough diffuse reflection that loses no energy: Fujii's form of Oren and Nayar's model, and what its cavities reflect among
 // each other. `roughness` 0 is Lambert's model, 1 the roughest.
 // Source: Portsmouth, Kutz and Hill 2025, "EON: A Practical Energy-Preserving Rough Diffuse BRDF", JCGT 14(1), listings 1 to 3;
-// https://jcgt.org/published/0014/01/06/.
+// <https://jcgt.org/published/0014/01/06/>.
 #ifndef SHADING_EON_GLSL
 #define SHADING_EON_GLSL
 
