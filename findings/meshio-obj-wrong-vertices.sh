@@ -2,7 +2,7 @@
 # meshio (PyPI 5.3.5): reading OBJ with negative indices joins the wrong vertices, and normals land on the wrong points.
 #
 # Expected: index -1 is the vertex read last, -3 the third from last; `f 1//3` gives vertex 1 the third normal. Source:
-#   Wavefront, "Advanced Visualizer manual", appendix B (OBJ), "Relative vertex numbering" and "Vertex normal".
+#   Alias|Wavefront, "Object Files (.obj)", on negative reference numbers and on vn.
 # Seen: 1 is taken off each index, negative ones too, so -1 becomes -2, which numpy takes from the end without a complaint:
 #   the triangle of the last three of four vertices becomes one of the first three. Normals are given to points by their order
 #   in the file, whatever the faces say: all corners name (0, 0, 1), the points get (1, 0, 0), (0, 1, 0) and (0, 0, 1).

@@ -3,7 +3,7 @@
 # normals.
 #
 # Expected: a trip without a filter keeps what the format can hold: Kd 0.5, Ke, d, and the normals of the corners. Source:
-#   Wavefront, "Advanced Visualizer manual", appendices B and B1: normals are unit vectors by use, colours are decimal
+#   Alias|Wavefront, "Object Files (.obj)" and "Material Library File (.mtl)": normals are unit vectors by use, colours are decimal
 #   numbers.
 # Seen: colours go through bytes that are cut off, not rounded: Kd 0.5 is 0.498039 after one trip and 0.494118 after two. Ke
 #   and d are gone (Tr 0 is written), Ks becomes 1 where none was. The normal (0, 0.6, 0.8) is replaced by one of length pi/2,

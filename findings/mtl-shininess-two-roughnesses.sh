@@ -2,8 +2,8 @@
 # trimesh (PyPI 5.2.0) and obj2gltf (npm 3.2.0): one shininess of an OBJ becomes a mirror in one converter and satin in the
 # other.
 #
-# Expected: Ns is the exponent of a highlight; its twin is a roughness whose lobe is as wide. Source: Wavefront, "Advanced
-#   Visualizer manual", appendix B1 (MTL), Ns; Bruce Walter et al., "Microfacet Models for Refraction through Rough Surfaces"
+# Expected: Ns is the exponent of a highlight; its twin is a roughness whose lobe is as wide. Source: Alias|Wavefront,
+#   "File Formats" 4.2 (1995), "Material Library File (.mtl)", Ns; Bruce Walter et al., "Microfacet Models for Refraction through Rough Surfaces"
 #   (2007), section 5.2: for an exponent n alpha = sqrt(2 / (n + 2)); glTF 2.0, appendix B: alpha is roughness squared.
 # Seen: for Ns 100 trimesh follows this and gives roughness 0.374 (alpha 0.14); obj2gltf gives 0.9 (alpha 0.81). For Ns 1000
 #   trimesh gives 0.211, obj2gltf 0, a perfect mirror. (bpy 5.0.1 gives 0.684 and 0.)

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Open3D (PyPI 0.20.0): an OBJ that writes .5 instead of 0.5 cannot be read.
 #
-# Expected: .5 is a decimal number as C, Fortran and every other OBJ reader know it. Source: Wavefront, "Advanced Visualizer
-#   manual", appendix B (OBJ), where coordinates are floating point numbers.
+# Expected: .5 is a decimal number as C, Fortran and every other OBJ reader know it. Source: Alias|Wavefront,
+#   "Object Files (.obj)", where coordinates are floating point numbers.
 # Seen: the vertex is not counted, and a face that names it ends in "OBJ: vertex index out of range" and an empty mesh.
 #   trimesh, tobj, VTK, MeshLab and Blender read the file.
 # Hurts: small exporters and awk scripts write numbers so; the message points at faces, which are right.

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Open3D (PyPI 0.20.0): an OBJ of quads is read as an empty mesh, and a pentagon or a quad among triangles is dropped.
 #
-# Expected: a face of an OBJ has three or more corners, and a reader of triangles splits it. Source: Wavefront, "Advanced
-#   Visualizer manual", appendix B (OBJ), "Face"; the documentation of `read_triangle_mesh`, whose format table lists obj with
+# Expected: a face of an OBJ has three or more corners, and a reader of triangles splits it. Source: Alias|Wavefront,
+#   "Object Files (.obj)", on f; the documentation of `read_triangle_mesh`, whose format table lists obj with
 #   no such limit. The same quad as OFF is split into two triangles by Open3D itself.
 # Seen: no triangle, no vertex. The only word is an INFO line, "Skipping non-triangle primitive geometry of type: 8".
 # Hurts: most modelled meshes are quads; half-triangulated ones lose their flat parts and keep the rest, so counts and bounds

@@ -2,7 +2,8 @@
 # three.js (npm three 0.187.0): MTLLoader bends the colours of a material, and emission above 1 explodes.
 #
 # Expected: Kd, Ks and Ke are multipliers of light, so a lamp of Ke 4 4 4 shines twice as much as one of Ke 2 2 2. Source:
-#   Wavefront, "Advanced Visualizer manual", appendix B1 (MTL), where Kd is a share of reflected light, may leave the range of
+#   Alias|Wavefront, "File Formats" 4.2 (1995), "Material Library File (.mtl)",
+#   where Kd is a share of reflected light, may leave the range of
 #   0 to 1, and has no transfer function. tobj 4.0.5, bpy 5.0.1 and obj2gltf 3.2.0 take the numbers as they stand.
 # Seen: three takes all of them for sRGB and decodes them, beyond 1 too. Kd 0.5 becomes 0.214, and Ke 2 3 4 becomes
 #   4.95 12.8 25.3: the lamp of 4 is five times that of 2.

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # three.js (npm three 0.187.0): one line element in an OBJ object turns all faces of that object into loose lines.
 #
-# Expected: faces (f) and lines (l) are elements of their own, and an object may hold both. Source: Wavefront, "Advanced
-#   Visualizer manual", appendix B (OBJ), "Elements": points, lines, faces, curves and surfaces, in any order. Blender writes
+# Expected: faces (f) and lines (l) are elements of their own, and an object may hold both. Source: Alias|Wavefront,
+#   "Object Files (.obj)", on elements: points, lines, faces, curves and surfaces, in any order. Blender writes
 #   such objects where a mesh has loose edges.
 # Seen: `l` sets the type of the whole object. The two triangles below become six end points of line segments, joined with the
 #   two of the line; no mesh is left, and nothing is said.

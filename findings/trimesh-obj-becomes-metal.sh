@@ -2,8 +2,8 @@
 # trimesh (PyPI 5.2.0): converting OBJ to GLB turns a matt material into metal and drops its light and its opacity.
 #
 # Expected: a material of Kd alone is a diffuse one, so its glTF twin has metallicFactor 0. Ke has a twin in emissiveFactor
-#   and KHR_materials_emissive_strength, d in the alpha of baseColorFactor. Source: Wavefront, "Advanced Visualizer manual",
-#   appendix B1 (MTL); glTF 2.0, schema of pbrMetallicRoughness, where a metallicFactor that is not written is 1.
+#   and KHR_materials_emissive_strength, d in the alpha of baseColorFactor. Source: Alias|Wavefront, "File Formats" 4.2 (1995), "Material Library File (.mtl)";
+#   glTF 2.0, schema of pbrMetallicRoughness, where a metallicFactor that is not written is 1.
 # Seen: the GLB has a baseColorFactor with alpha 1 and a roughnessFactor, and neither metallicFactor nor emissiveFactor.
 #   Readers take it for a metal that does not shine. trimesh keeps Ke and d as strings in `material.kwargs`, so they were
 #   read.

@@ -2,7 +2,7 @@
 # trimesh (PyPI 5.2.0): negative indices of an OBJ count from the end of the file, so all objects fall onto the last one.
 #
 # Expected: a negative index counts back from the vertex read last when the face is met, so that pieces can be appended to one
-#   another. Source: Wavefront, "Advanced Visualizer manual", appendix B (OBJ), "Relative vertex numbering". tobj 4.0.5, VTK
+#   another. Source: Alias|Wavefront, "Object Files (.obj)", on negative reference numbers. tobj 4.0.5, VTK
 #   9.7.2, bpy 5.0.1 and MeshLab 2025.7 read the file below so.
 # Seen: two triangles, at x = 0 and at x = 5, each of indices -3 -2 -1. trimesh returns two triangles at x = 5, and no vertex
 #   at x = 0, without a warning.
