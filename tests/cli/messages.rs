@@ -195,10 +195,12 @@ fn reader_that_goes_away_is_no_error() {
 
 /// Runs the program with standard output closed at the other end; its exit code and what it says.
 fn without_a_reader(folder: &Folder, args: &[&str]) -> (Option<i32>, String) {
+    // The reader is gone before the program begins: a small picture fits into a pipe that somebody still holds.
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
     let mut child = Command::new(program());
-    child.args(args).current_dir(folder.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
+    child.args(args).current_dir(folder.path("")).stdout(writer).stderr(Stdio::piped());
     let mut child = child.spawn().expect("started");
-    drop(child.stdout.take());
     let mut stderr = String::new();
     child.stderr.take().expect("piped").read_to_string(&mut stderr).expect("text");
     (child.wait().expect("ended").code(), stderr)
