@@ -265,7 +265,7 @@ fn microfacets_are_normalised_in_every_distribution() {
             assert!((whole - 1.0).abs() < 2e-3, "{kind} {a} {b}: {whole}");
         }
     }
-    // LECTURE.md: Beckmann of alpha .1 and .1/.3 at the normal, and at pi / 19.
+    // Beckmann of alpha .1 and .1/.3 at the normal, 1 / (pi alpha_u alpha_v), and at pi / 19.
     assert!((facet_d(0, 0.1, 0.1, 1.0, Vec3::Z) - 31.830_988).abs() < 1e-4);
     assert!((facet_d(0, 0.1, 0.3, 1.0, Vec3::Z) - 10.610_33).abs() < 1e-4);
     let at = direction(libm::cos(PI / 19.0), 0.0);
@@ -307,7 +307,7 @@ fn smooth_models_have_lobes_of_zero_width_with_fresnel_s_shares() {
         f64::from(mirrored) / f64::from(count)
     };
     let glass = white(Model::Dielectric { eta: 1.5, absorption: Rgb::ZERO });
-    // LECTURE.md: F(45 deg, 1 to 1.5) = .0502399; F(10 deg, 1.5 to 1) = .0400830; total beyond 41.81 degrees.
+    // Fresnel's equations: F(45 deg, 1 to 1.5) = .0502399; F(10 deg, 1.5 to 1) = .0400830; total beyond 41.81 degrees.
     let at = |degrees: f64| direction(libm::cos(degrees.to_radians()), 0.4);
     assert!((share(&glass, at(45.0)) - 0.0502).abs() < 0.006);
     assert!((share(&glass, -at(10.0)) - 0.0401).abs() < 0.006);

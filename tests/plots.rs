@@ -34,7 +34,7 @@ fn the_highlight_curves_are_powers_of_the_cosine() {
 fn the_distributions_are_normalised_as_their_note_says() {
     let figure = curves::distribution_figure(&FACETS, &[0.1, 0.4]);
     assert_eq!(figure.curves.len(), 2 * FACETS.len());
-    // LECTURE.md: Beckmann, alpha .1: D(0) = 31.8309879.
+    // Beckmann, alpha .1: D(0) = 1 / (pi alpha^2) = 31.8309879.
     assert!((value_at(&figure.curves[0], 0.0) - 31.8309879).abs() < 1e-3);
     for curve in &figure.curves {
         let fine = |a: f64| {

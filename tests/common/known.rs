@@ -80,7 +80,7 @@ pub fn models() -> Vec<Known> {
     let phong = |lafortune| half(Model::Phong { exponent: 12.0, lafortune: Some(lafortune) });
     vec![
         of("lambert", white(Model::Lambert)),
-        // (V.R)^n / (N.L): LECTURE.md, "Phong in a path tracer".
+        // Printed as what is seen, (V.R)^n; as a BRDF it is that over N.L.
         Known { reciprocal: None, ..of("phong, as printed", phong(false)) },
         of("phong, lafortune", phong(true)),
         Known { reciprocal: None, ..of("blinn-phong", half(Model::BlinnPhong { exponent: 12.0 })) },

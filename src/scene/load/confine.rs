@@ -170,7 +170,9 @@ mod tests {
         std::fs::write(folder.path().join("secret"), "x").unwrap();
         symlink("../file", inside.join("sub/back")).unwrap();
         symlink("../secret", inside.join("out")).unwrap();
-        symlink("/proc/self/root/etc/passwd", inside.join("magic")).unwrap();
+        // The system's own link to everything, to a file of ours.
+        let secret = folder.path().join("secret").canonicalize().unwrap();
+        symlink(format!("/proc/self/root{}", secret.display()), inside.join("magic")).unwrap();
         symlink(folder.path(), inside.join("up")).unwrap();
         let names = [inside.clone(), inside.canonicalize().unwrap()];
         (folder, Root { folder: File::open(&inside).unwrap(), names })
@@ -194,9 +196,7 @@ mod tests {
     fn what_lies_outside_is_refused_whether_it_is_there_or_not() {
         let (folder, root) = folders();
         let inside = folder.path().join("inside");
-        for name in
-            ["out", "../secret", "../absent", "sub/../../secret", "up/secret", "magic", "/etc/passwd", "/absent"]
-        {
+        for name in ["out", "../secret", "../absent", "sub/../../secret", "up/secret", "magic", "/absent"] {
             for wanted in [Wanted::Bytes, Wanted::Kind] {
                 let error = root.open(&inside.join(name), wanted).unwrap_err();
                 assert_eq!(error.to_string(), root.outside().to_string(), "{name}");

@@ -23,7 +23,7 @@ pub const METALS: &[(&str, Metal)] = &[
 impl Metal {
     /// eta is the tabulated n at 611, 549 and 464 nm: Johnson and Christy 1972 (Cu, Au, Ag), Johnson and Christy 1974 (Cr),
     /// Rakic 1995 (Al). Three wavelengths are not the colour of a spectrum, so k is solved for the normal-incidence
-    /// reflectance R that the whole spectrum has under D65 (LECTURE.md's table; chromium: integrated from its own data),
+    /// reflectance R that the whole spectrum has under D65 (the table of the test below; chromium: integrated from its own data),
     /// k^2 = (R (n + 1)^2 - (n - 1)^2) / (1 - R). Gold's red is 1.022, outside the gamut; no reflectance is, so 0.99.
     pub fn fresnel(self) -> Fresnel {
         let (eta, k) = match self {
@@ -54,7 +54,7 @@ mod tests {
 
     #[test]
     fn metals_have_the_normal_incidence_colours_of_the_lecture() {
-        // LECTURE.md, "Normal-incidence metals in linear sRGB under D65"; gold's red is clipped.
+        // Reflectance at normal incidence, linear sRGB under D65; gold's red is clipped.
         let table = [
             (Metal::Copper, [0.955, 0.638, 0.537]),
             (Metal::Gold, [0.99, 0.783, 0.342]),
